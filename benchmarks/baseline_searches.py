@@ -23,8 +23,6 @@ from evodesign.records import Genome, SearchSettings
 from evodesign.searches.base import Outcome
 from evodesign.searches.ranking import usable, with_outcomes
 
-__all__ = ["BASELINES", "BOTORCH", "BaselineSearch"]
-
 BOTORCH = "BoTorch qLogNEHVI"
 """Left out unless it is asked for: it needs PyTorch (`pip install botorch`) and minutes of processor time."""
 

@@ -24,7 +24,7 @@ from typing import Any
 
 import msgspec
 
-from evodesign.evolve import Silent, start
+from evodesign.evolve import start
 from evodesign.pool.base import Finished, Pool
 from evodesign.records import (
     FORMAT_VERSION,
@@ -40,6 +40,7 @@ from evodesign.records import (
     Status,
     design_of,
 )
+from evodesign.runlog.session_log import Silent
 
 SHORTEST, LONGEST = 0.05, 5.0
 DIMENSION = 16

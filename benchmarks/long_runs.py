@@ -20,7 +20,7 @@ from typing import Any
 
 import msgspec
 
-from evodesign.evolve import Silent, start
+from evodesign.evolve import start
 from evodesign.pool.registry import make_pool
 from evodesign.pool.worker import SerialPool
 from evodesign.problem.build import build_problem
@@ -29,6 +29,7 @@ from evodesign.problem.source import read_source
 from evodesign.records import Evaluation
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import read_run
+from evodesign.runlog.session_log import Silent
 from evodesign.runlog.writer import RunWriter
 
 ROOT = Path(__file__).parents[1]

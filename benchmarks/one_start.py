@@ -19,7 +19,8 @@ from evodesign.human.measured_posture import HumanPosture
 from evodesign.human.population import population
 from evodesign.mechanics.scene import ROBOT, Payload, Scene
 from evodesign.nlp.landscape import cost_of
-from evodesign.nlp.solver import RawSolution, SolverOptions
+from evodesign.nlp.method import SolverOptions
+from evodesign.nlp.solver import RawSolution
 from evodesign.posture.formulations.human_value import HumanProblem
 from evodesign.posture.measured_starts import measured_starts
 from evodesign.posture.results import Array

@@ -19,10 +19,11 @@ from pathlib import Path
 import msgspec
 from idle_share import assess, header_of
 
-from evodesign.evolve import Silent, start
+from evodesign.evolve import start
 from evodesign.pool.base import Pool
 from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.records import Assessed, Genome
+from evodesign.runlog.session_log import Silent
 
 SECONDS = 1.0 / 15.0
 POPULATION = 48

@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.paper_posture import PaperPostures
-from evodesign.nlp.solver import SolverOptions
+from evodesign.nlp.method import SolverOptions
 from evodesign.pool.worker import SerialPool
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
@@ -34,8 +34,6 @@ from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.source import read_source
 from evodesign.records import Hold, Status
-
-__all__ = ["BOUNDED", "TOLERANCE", "Figures", "measure", "measure_ours", "reaching_designs"]
 
 PROBLEM = Path(__file__).parent.parent / "problems" / "point_grasp.toml"
 

@@ -22,8 +22,9 @@ from numpy.typing import NDArray
 
 from benchmarks.projected_graph import DAMPING, Statics, agent_matrices, projected_statics
 from evodesign.mechanics.scene import SIDES, Agent, Scene
+from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
-from evodesign.nlp.solver import RawSolution, Solver, SolverOptions
+from evodesign.nlp.solver import RawSolution, Solver
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.results import AgentPosture, Instant
@@ -34,8 +35,6 @@ from evodesign.posture.terms.load import LOAD_UNIT, force_along_x
 from evodesign.posture.terms.registry import TERMS
 from evodesign.problem.build import DesignProblem
 from evodesign.tree.model import Tree
-
-__all__ = ["PaperPostures", "PaperProgram", "paper_program"]
 
 Array = NDArray[np.float64]
 Expression = Any

@@ -28,8 +28,6 @@ from evodesign.posture.terms.grasp import GRASP_ROWS
 from evodesign.tree.kinematics import Pose, euler_rotation, forward, vector
 from evodesign.tree.model import Link, Tree
 
-__all__ = ["DAMPING", "Statics", "agent_matrices", "projected_statics"]
-
 Expression = Any
 
 DAMPING = 1e-6

@@ -16,14 +16,8 @@ from dataclasses import replace
 import numpy as np
 
 from benchmarks.inner_problem import problem_at
-from evodesign.design.space import (
-    ALLOCATIONS,
-    EFFORT_RATIO,
-    ROBOT_SHARE,
-    DesignParameter,
-    DesignSpace,
-    ParameterKind,
-)
+from evodesign.design.parameter import ALLOCATIONS, EFFORT_RATIO, ROBOT_SHARE, DesignParameter, ParameterKind
+from evodesign.design.space import DesignSpace
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp
 from evodesign.posture.allocation import EffortWeights, shared_scene

@@ -20,12 +20,12 @@ from typing import Any
 import evodesign
 from benchmarks.inner_problem import HERE
 from evodesign.analysis.front import front
-from evodesign.motion.course import Lift
 from evodesign.problem.factory import evaluator_of
 from evodesign.problem.lifts import Lifts
 from evodesign.problem.progress import SILENT
 from evodesign.problem.simulation_json import simulations_json
 from evodesign.problem.simulations import HOLD_SECONDS, simulated_holds, simulated_lifts
+from evodesign.records import Lift
 from evodesign.report.opened_design import open_design
 from evodesign.runlog.run import read_run
 from evodesign.simulation.feedback import Feedback

@@ -5,8 +5,6 @@ import sys
 from evodesign.interrupts import INTERRUPTED, INTERRUPTS
 from evodesign.streams import adapt_streams
 
-__all__ = ["main"]
-
 
 def main() -> None:
     """Run a command.

@@ -24,8 +24,6 @@ from evodesign.session import (
     settle,
 )
 
-__all__ = ["evolve_asynchronously"]
-
 
 def evolve_asynchronously(session: Session, search: AsynchronousSearch) -> None:
     """Keep all workers busy until the budget is used up or nothing is gained.

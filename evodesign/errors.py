@@ -17,20 +17,6 @@ import difflib
 import re
 from collections.abc import Iterable, Sequence
 
-__all__ = [
-    "AllFailed",
-    "EvodesignError",
-    "InputError",
-    "Interrupted",
-    "ModelError",
-    "ResumeMismatch",
-    "RunError",
-    "listed",
-    "nearest_name",
-    "on_one_line",
-    "shortened",
-]
-
 LONGEST_WORD, LONGEST_CLAUSE = 80, 600
 """Letters of a word (paths have one in each folder) and of a clause that a message repeats of a file."""
 

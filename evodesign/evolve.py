@@ -47,8 +47,6 @@ from evodesign.session import (
     settle,
 )
 
-__all__ = ["MakeSearch", "Observer", "Silent", "replay", "resume", "start"]
-
 MakeSearch = Callable[[SearchSettings], Search]
 
 

@@ -19,8 +19,6 @@ from typing import BinaryIO, Final
 
 from evodesign.errors import InputError
 
-__all__ = ["begun", "is_there", "make_folder", "replacing", "write_folder", "write_whole"]
-
 UNFINISHED: Final = re.compile(r"\.evodesign-[0-9a-f]{16}\.part")
 """Names of files that are being written, or were when their process was killed."""
 

@@ -34,8 +34,6 @@ from typing import Any
 import msgspec
 import numpy as np
 
-__all__ = ["Exceptions", "ImportClosure", "code_digest", "digest", "import_closure"]
-
 Exceptions = Mapping[type, Mapping[str, str]]
 """Fields that do not count, by the record's class and the field's name, each with the reason."""
 

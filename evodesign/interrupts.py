@@ -23,8 +23,6 @@ from typing import TYPE_CHECKING, Any, NoReturn
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["INTERRUPTED", "INTERRUPTS", "STOPPED", "Interrupts"]
-
 STOPPED = 3
 """Exit code of what was stopped and can be resumed."""
 

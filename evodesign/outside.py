@@ -12,8 +12,6 @@ import pkgutil
 
 from evodesign.errors import InputError
 
-__all__ = ["MODULES_VARIABLE", "imported", "is_outside"]
-
 MODULES_VARIABLE = "EVODESIGN_MODULES"
 """Names of the modules that may be imported, separated by commas."""
 

@@ -46,18 +46,6 @@ from evodesign.runlog.session_log import Observer, SessionLog
 from evodesign.searches.base import Gradient, ObjectivePart, Outcome
 from evodesign.violations import HEIGHT, bound_margin, height_margin
 
-__all__ = [
-    "Display",
-    "Evaluate",
-    "EvaluationOutcome",
-    "Session",
-    "conclude",
-    "evaluation_outcome",
-    "remember",
-    "search_outcome",
-    "settle",
-]
-
 Evaluate = Factory[Genome, Assessed]
 
 NUMBER = re.compile(r"-?\d[\d.]*(e[-+]?\d+)?")

@@ -20,8 +20,6 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
 
-__all__ = ["UNREAD", "adapt_streams"]
-
 UNREAD = 141
 """Exit code of a command whose reader has gone: 128 and the number of SIGPIPE, as shells count."""
 

@@ -21,23 +21,6 @@ from typing import Any
 
 from evodesign.records import Assessment, CaseOutcome, Constraint, ReachOutcome, Status
 
-__all__ = [
-    "BODIES_APART",
-    "HEIGHT",
-    "bound_margin",
-    "bounds_text",
-    "constraint_sentences",
-    "constraints_json",
-    "exceeded_bounds",
-    "excess",
-    "height_margin",
-    "missed_height",
-    "reason_of_infeasibility",
-    "total_violation",
-    "violation_terms",
-    "violations",
-]
-
 HEIGHT = "height"
 """Name of the constraint that every problem has: that the load is held at all required heights."""
 

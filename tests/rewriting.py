@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-__all__ = ["write_anew"]
-
 
 def write_anew(path: Path, content: bytes) -> None:
     """Write a file as if there had been none: one that is emptied first may wait for the disk."""

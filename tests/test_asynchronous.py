@@ -12,12 +12,13 @@ import msgspec
 import pytest
 
 from evodesign.errors import Interrupted, ResumeMismatch, RunError
-from evodesign.evolve import Silent, resume, start
+from evodesign.evolve import resume, start
 from evodesign.pool.base import Finished, Pool
 from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.pool.worker import SerialPool
 from evodesign.records import Evaluation, Generation, Genome, RunHeader, Turn
 from evodesign.runlog.run import RunLog, read_run
+from evodesign.runlog.session_log import Silent
 from evodesign.runlog.writer import RunWriter
 from evodesign.searches.registry import ASYNCHRONOUS_SEARCHES
 from tests.pool.faulty import Slow

@@ -19,11 +19,12 @@ from hypothesis import strategies as st
 from evodesign.analysis.hypervolume import hypervolume
 from evodesign.analysis.run_state import exhausted
 from evodesign.errors import Interrupted, ResumeMismatch, RunError
-from evodesign.evolve import Silent, resume, start
+from evodesign.evolve import resume, start
 from evodesign.pool.base import Finished
 from evodesign.pool.registry import make_pool
 from evodesign.records import Evaluation, Generation, Genome, RunHeader, Status
 from evodesign.runlog.run import RunLog, read_run
+from evodesign.runlog.session_log import Silent
 from evodesign.runlog.writer import RunWriter
 from evodesign.searches.registry import SEARCHES
 from tests.runlog.toys import (

@@ -15,8 +15,9 @@ import pytest
 from evodesign.mechanics.scene import ROBOT, SIDES, Scene
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.design_result import CaseQuantity
 from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.objectives import QUANTITIES, CaseQuantity
+from evodesign.problem.objectives import QUANTITIES
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Genome, SearchSettings
 from evodesign.searches.base import Outcome

@@ -11,11 +11,12 @@ import msgspec
 import pytest
 
 from evodesign.errors import AllFailed, Interrupted
-from evodesign.evolve import Silent, resume, start
+from evodesign.evolve import resume, start
 from evodesign.pool.base import Finished
 from evodesign.pool.worker import SerialPool
 from evodesign.records import RunHeader, Status
 from evodesign.runlog.run import read_run
+from evodesign.runlog.session_log import Silent
 from tests.runlog.toys import OrderedPool, ToyTask, essence, shuffled, toy_header
 
 POPULATION = 4

@@ -11,8 +11,6 @@ from evodesign.analysis.front import front
 from evodesign.records import ActiveLimit, Hold
 from evodesign.runlog.run import RunLog
 
-__all__ = ["FrequentLimit", "frequent_limits", "limits_json"]
-
 OFTEN = 0.5
 """Share of the cases of a front above which a limit is reported."""
 

@@ -12,8 +12,6 @@ from evodesign.runlog.gaps import consecutive, listed, missing, record_gaps
 from evodesign.runlog.run import RunLog
 from evodesign.violations import missed_height, total_violation
 
-__all__ = ["audit", "losses"]
-
 TOLERANCE = 1e-9
 """Relative difference of a hypervolume that rounding on another processor may cause."""
 

@@ -15,8 +15,6 @@ from evodesign.analysis.decision_making import closest, knees, most_different
 from evodesign.analysis.front import front, to_minimise
 from evodesign.records import Evaluation, Objective
 
-__all__ = ["Choice", "Chosen", "Order", "choose"]
-
 
 class Order(StrEnum):
     """Which designs of the front are chosen, and in which order."""

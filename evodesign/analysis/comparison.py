@@ -20,17 +20,6 @@ from evodesign.analysis.seed_statistics import AttainmentSurface, RankTest, atta
 from evodesign.records import Evaluation, Objective, RunHeader
 from evodesign.runlog.run import RunLog
 
-__all__ = [
-    "MOST_KNEES",
-    "Attainment",
-    "BestDesign",
-    "Compared",
-    "Comparison",
-    "best_designs",
-    "compare",
-    "search_name",
-]
-
 MOST_KNEES = 5
 """Knees of the common front that are named."""
 

@@ -8,8 +8,6 @@ from typing import Any
 
 from evodesign.analysis.comparison import Compared, Comparison, best_designs
 
-__all__ = ["comparison_json", "hypervolume_summary"]
-
 
 def comparison_json(comparison: Comparison) -> dict[str, Any]:
     """A comparison as a JSON object; its shape is a promise."""

@@ -28,18 +28,6 @@ from operator import attrgetter
 from evodesign.errors import InputError, nearest_name
 from evodesign.records import SUM, Case, CaseOutcome, Evaluation, RunHeader, Task
 
-__all__ = [
-    "Condition",
-    "Quantity",
-    "all_conditions",
-    "conditions",
-    "described",
-    "meeting",
-    "quantities",
-    "quantity",
-    "total",
-]
-
 Quantity = Callable[[Evaluation], float | None]
 """A number of an evaluation; None where it does not exist."""
 

@@ -61,21 +61,6 @@ from evodesign.analysis.front import comparable, to_minimise
 from evodesign.errors import InputError, nearest_name
 from evodesign.records import Evaluation, Objective
 
-__all__ = [
-    "AUGMENTATION",
-    "NEIGHBOURHOOD",
-    "Matrix",
-    "Scaled",
-    "achievements",
-    "aspiration_of",
-    "bulges",
-    "closest",
-    "knees",
-    "most_different",
-    "scaled",
-    "spread_out",
-]
-
 NEGLIGIBLE = 1e-4
 """Range, as a share of the largest value's size, below which an objective counts as equal."""
 

@@ -15,8 +15,6 @@ from dataclasses import dataclass
 from evodesign.records import Assessment, Constraint, Evaluation, Hold, Status
 from evodesign.violations import exceeded_bounds, reason_of_infeasibility
 
-__all__ = ["Cause", "causes", "causes_of_infeasibility", "failed", "failures"]
-
 
 def failed(evaluation: Evaluation) -> bool:
     """Whether an evaluation ended without a result for its design."""

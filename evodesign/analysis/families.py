@@ -28,8 +28,6 @@ from evodesign.analysis.front import to_minimise
 from evodesign.errors import InputError, nearest_name
 from evodesign.records import SUM, Descriptor, Evaluation, Objective, RunHeader
 
-__all__ = ["CELLS", "Families", "Kind", "families", "families_json"]
-
 CELLS = 20
 """Parts of a descriptor's bounds where none are given."""
 

@@ -13,8 +13,6 @@ import numpy as np
 
 from evodesign.records import Assessment, Evaluation, Objective, Sense
 
-__all__ = ["RunningFront", "comparable", "front", "minimised", "to_minimise"]
-
 
 def to_minimise(objective: Objective, value: float) -> float:
     """A natural value turned so that less is better; applied twice, the natural value again."""

@@ -22,8 +22,6 @@ import numpy as np
 
 from evodesign.records import Generation
 
-__all__ = ["HIGH", "LOW", "USUAL", "HypervolumeGrowth", "growth", "growth_of"]
-
 USUAL, LOW, HIGH = 0.79, 0.3, 3.15
 """Growth of a doubling divided by that of the one before: median, and the quantiles 10 % and 90 %."""
 

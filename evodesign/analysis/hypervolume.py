@@ -21,8 +21,6 @@ import numpy as np
 from evodesign.analysis.front import comparable, front, to_minimise
 from evodesign.records import Evaluation, Objective
 
-__all__ = ["PLACES", "Curve", "best", "curve", "hypervolume", "reference_point"]
-
 MARGIN = 0.1
 """Share of the range by which the reference is worse than the worst value, so that the ends count."""
 

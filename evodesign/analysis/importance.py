@@ -23,18 +23,6 @@ from evodesign.analysis.response import Response, response
 from evodesign.analysis.variance_shares import along, pair_shares, variance_shares
 from evodesign.records import Evaluation, Parameter, RunHeader
 
-__all__ = [
-    "CLEAR",
-    "Estimate",
-    "Importance",
-    "ObjectiveImportance",
-    "PairImportance",
-    "ParameterImportance",
-    "Slice",
-    "importance",
-    "slices",
-]
-
 Array = NDArray[np.float64]
 
 LOW, HIGH = 0.05, 0.95

@@ -15,8 +15,6 @@ from evodesign.analysis.importance import (
 )
 from evodesign.runlog.run import RunLog
 
-__all__ = ["METHOD", "importance_json", "matters_json", "slices_json"]
-
 METHOD = (
     "Sobol' indices over the whole space, parameters uniform and independent, of models learnt from the log; "
     "means of 40 samples of five models, each made without a fifth of the designs, with 5 % and 95 % "

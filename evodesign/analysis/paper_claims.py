@@ -8,18 +8,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-__all__ = [
-    "PAPER_OPTIMISED",
-    "PAPER_ORIGINAL",
-    "Claim",
-    "TorqueNorms",
-    "TorqueNormsByHeight",
-    "human_claim",
-    "reach_claim",
-    "reduction_claim",
-    "table_claim",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class TorqueNorms:

@@ -19,20 +19,6 @@ from evodesign.analysis.front import front, to_minimise
 from evodesign.records import Constraint, Evaluation, Objective, SampledDesign, SampledPeople
 from evodesign.runlog.run import RunLog
 
-__all__ = [
-    "NEGLIGIBLE",
-    "DesignSpread",
-    "Moments",
-    "PeopleSpread",
-    "QuantitySpread",
-    "all_spreads_json",
-    "people_spread",
-    "spread_among",
-    "spread_json",
-    "spread_of_run",
-    "spread_sentence",
-]
-
 NEGLIGIBLE = 1e-6
 """Deviation or gain, as a share of a value's size, that counts as none: solvers leave as much open."""
 

@@ -27,8 +27,6 @@ from evodesign.searches.surrogate.approximation import Approximation, Function, 
 from evodesign.searches.surrogate.global_model import MOST_FEATURES
 from evodesign.searches.surrogate.threads import one_thread
 
-__all__ = ["LEAST_EXPLAINED", "Response", "response"]
-
 Array = NDArray[np.float64]
 
 FOLDS = 5

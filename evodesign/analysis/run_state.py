@@ -15,8 +15,6 @@ from evodesign.analysis.growth import growth_of
 from evodesign.analysis.hypervolume import best, hypervolume, reference_point
 from evodesign.records import Evaluation, Front, Generation, Objective, RunHeader
 
-__all__ = ["LEAST_GROWTH", "RunState", "exhausted", "stagnant"]
-
 LEAST_GROWTH = 1e-3
 """Share of its value by which a hypervolume must grow to count as growing."""
 

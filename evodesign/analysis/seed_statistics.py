@@ -36,8 +36,6 @@ from scipy.stats import kruskal, mannwhitneyu
 from evodesign.analysis.front import comparable, front, to_minimise
 from evodesign.records import Evaluation, Objective
 
-__all__ = ["LEVEL", "AttainmentSurface", "RankTest", "attainment_surfaces", "rank_tests"]
-
 LEVEL = 0.05
 """Chance of seeing a difference where there is none that is thought bearable."""
 

@@ -19,19 +19,6 @@ import numpy as np
 
 from evodesign.analysis.paper_claims import ALIKE, Claim
 
-__all__ = [
-    "FAILED",
-    "LOGGED",
-    "RobotFigures",
-    "SearchFigures",
-    "failure_claim",
-    "gain_claim",
-    "log_claim",
-    "order_claim",
-    "robot_claim",
-    "search_claim",
-]
-
 LOGGED: Mapping[str, float] = {
     "log_1": 0.1862234773970584,
     "log_2": 0.18580286560046727,

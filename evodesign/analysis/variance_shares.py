@@ -32,8 +32,6 @@ from scipy.stats import qmc
 from evodesign.records import middle_of
 from evodesign.searches.discrete import snapped
 
-__all__ = ["VarianceShares", "along", "pair_shares", "variance_shares"]
-
 Array = NDArray[np.float64]
 Function = Callable[[Array], Array]
 """From points [points x dimension] to values [points x samples], of several functions at once."""

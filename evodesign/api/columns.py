@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 from evodesign.analysis.conditions import Quantity
 from evodesign.records import Evaluation
 
-__all__ = ["Column", "case_columns", "evaluation_columns"]
-
 Column = NDArray[Any]
 """A value per row: whole numbers, numbers, truth values, or texts."""
 

@@ -9,8 +9,6 @@ from evodesign.analysis.front import minimised
 from evodesign.records import Assessment, Constraint, Objective
 from evodesign.violations import HEIGHT, missed_height, violation_terms
 
-__all__ = ["constraint_names", "constraint_values"]
-
 
 def constraint_names(constraints: Sequence[Constraint]) -> tuple[str, ...]:
     """Names of the columns: `height`, then the problem's constraints."""

@@ -13,8 +13,6 @@ from evodesign.records import Assessment, CaseDetail, CaseOutcome, Constraint, R
 from evodesign.runlog.run import RunLog
 from evodesign.violations import violations
 
-__all__ = ["Design"]
-
 
 @dataclass(frozen=True, slots=True)
 class Design:

@@ -9,8 +9,6 @@ from evodesign.api.problem import Problem
 from evodesign.motion.solution import LiftSolution
 from evodesign.tasks.lift import Lift, profile_named
 
-__all__ = ["lift"]
-
 
 def lift(
     problem: Problem,

@@ -28,8 +28,6 @@ except ModuleNotFoundError as error:
 if TYPE_CHECKING:
     from evodesign.api.problem import Problem
 
-__all__ = ["OptunaObjective", "study_of"]
-
 DIRECTIONS: Mapping[Sense, Literal["minimize", "maximize"]] = {
     Sense.MINIMISE: "minimize",
     Sense.MAXIMISE: "maximize",

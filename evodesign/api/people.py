@@ -32,8 +32,6 @@ from evodesign.runlog.run import RunLog
 from evodesign.runlog.sampled_file import read_sampled, write_sampled
 from evodesign.session import Display, evaluation_outcome
 
-__all__ = ["MOST_DESIGNS", "draw_people", "usual_designs", "usual_reference"]
-
 MOST_DESIGNS = 20
 """Designs of a front that are evaluated where nobody says which: its most different ones."""
 

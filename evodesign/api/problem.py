@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from evodesign.api.design import Design
-from evodesign.design.space import ALLOCATIONS, ParameterKind
+from evodesign.design.parameter import ALLOCATIONS, ParameterKind
 from evodesign.errors import InputError, nearest_name, on_one_line
 from evodesign.motion.solution import LiftSolution
 from evodesign.pool.registry import make_pool
@@ -42,8 +42,6 @@ from evodesign.runlog.run import RunLog
 
 if TYPE_CHECKING:
     from evodesign.api.optuna_study import OptunaObjective
-
-__all__ = ["Problem", "open_problem", "problems"]
 
 LOGGER = logging.getLogger("evodesign")
 """Hears of designs beyond their bounds, as warnings."""

@@ -15,8 +15,6 @@ from evodesign.problem.time_left import PendingPiece, TimeLeft, in_words
 from evodesign.records import Evaluation, Generation, RunHeader, Status
 from evodesign.runlog.session_log import Observer
 
-__all__ = ["PrecomputeLines", "SearchLines", "generation_line"]
-
 
 class SearchLines(Observer):
     """One line when a session starts and one per generation."""

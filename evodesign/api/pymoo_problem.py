@@ -32,8 +32,6 @@ from evodesign.pool.registry import make_pool
 from evodesign.problem.factory import ValuesFactory, values_factory
 from evodesign.records import Assessed, Assessment
 
-__all__ = ["ALGORITHMS", "PymooProblem", "as_pymoo_problem"]
-
 
 def always(algorithm: Any) -> bool:
     """However it was set."""

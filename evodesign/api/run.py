@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from optuna import Study
     from optuna.storages import BaseStorage
 
-__all__ = ["Run", "open_run"]
-
 
 def open_run(path: str | os.PathLike[str]) -> Run:
     """Open a run's directory, also one that was cut off or is still being written.

@@ -21,8 +21,6 @@ from evodesign.runlog.run import RunLog
 from evodesign.runlog.session_log import Observer
 from evodesign.session import Display
 
-__all__ = ["Callback", "display_of", "resume", "search"]
-
 LOGGER = logging.getLogger("evodesign")
 """Hears what is strange about a problem or a run, at the level of information."""
 

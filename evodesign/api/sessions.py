@@ -36,8 +36,6 @@ from evodesign.searches.base import JOINT_STARTS
 from evodesign.searches.registry import make_asynchronous_search, make_search
 from evodesign.session import Display, Evaluate
 
-__all__ = ["Budgets", "Deadline", "Stop", "Workers", "begin", "new_directory", "proceed"]
-
 SECONDS_PER_HOUR = 3600.0
 
 

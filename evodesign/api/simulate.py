@@ -14,8 +14,6 @@ from evodesign.tasks.lift import profile_named
 if TYPE_CHECKING:
     from evodesign.problem.simulations import SimulatedCase
 
-__all__ = ["simulate"]
-
 
 def simulate(
     problem: Problem,

@@ -17,8 +17,6 @@ from evodesign.problem.build import build_problem
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.session import Display
 
-__all__ = ["spread", "spread_over_people"]
-
 
 def spread(
     run: Run | str | os.PathLike[str],

@@ -27,8 +27,6 @@ from evodesign.body.placement import (
     transpose,
 )
 
-__all__ = ["Inertia", "total"]
-
 NOTHING: Matrix = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 

@@ -14,8 +14,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
-__all__ = ["CATALOGUE", "Material"]
-
 _TABLE = "Callister and Rethwisch, Materials Science and Engineering, Table B.1"
 
 

@@ -19,20 +19,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = [
-    "IDENTITY",
-    "Matrix",
-    "Placement",
-    "Scalar",
-    "Vector",
-    "matrix_from_rpy",
-    "matrix_from_wxyz",
-    "mirrored_matrix",
-    "mirrored_point",
-    "quaternion_wxyz",
-    "rpy_from_matrix",
-]
-
 Scalar = Any
 """A float or a CasADi expression."""
 

@@ -22,8 +22,6 @@ from dataclasses import dataclass
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Matrix, Placement, Scalar, Vector
 
-__all__ = ["Box", "Cylinder", "Shape", "Solid", "Sphere"]
-
 Z = 2
 """Index of the z axis, along which a cylinder stands."""
 

@@ -11,8 +11,6 @@ import typer
 from evodesign.cli.options import CORES, Jobs, Json, PoolName, ProblemPath
 from evodesign.cli.search import search
 
-__all__ = ["baseline"]
-
 
 def baseline(
     problem: ProblemPath,

@@ -9,8 +9,6 @@ import typer
 from evodesign.cli import options
 from evodesign.cli.resume import resume
 
-__all__ = ["branch"]
-
 
 def branch(
     run: options.RunPath,

@@ -8,8 +8,6 @@ import typer
 
 from evodesign.cli.options import BAD_INPUT, Json, ProblemPath
 
-__all__ = ["check"]
-
 
 def check(problem: ProblemPath, json: Json = False) -> None:
     """Read a problem, show what was understood, and try whether the robot can do what is asked of it.

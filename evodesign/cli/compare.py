@@ -11,8 +11,6 @@ from evodesign.cli import damage
 from evodesign.cli.options import Damaged, Json
 from evodesign.errors import InputError
 
-__all__ = ["compare"]
-
 
 def compare(
     runs: Annotated[list[Path], typer.Argument(metavar="RUN RUN...", help="Directories of runs.")],

@@ -9,8 +9,6 @@ import typer
 if TYPE_CHECKING:
     from evodesign.runlog.run import RunLog
 
-__all__ = ["FROM_DAMAGED", "end"]
-
 FROM_DAMAGED = 4
 """Exit code of a command that is done, from a damaged run."""
 

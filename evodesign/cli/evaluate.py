@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from evodesign.problem.build import DesignProblem
     from evodesign.problem.design_result import DesignResult
 
-__all__ = ["chosen_design", "evaluate"]
-
 UNSCALED = "unscaled"
 
 

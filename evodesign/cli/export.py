@@ -10,8 +10,6 @@ import typer
 from evodesign.cli import damage
 from evodesign.cli.options import CORES, Damaged, Design, Jobs, RunPath
 
-__all__ = ["export"]
-
 
 def export(
     run: RunPath,

@@ -9,8 +9,6 @@ import typer
 from evodesign.cli import damage
 from evodesign.cli.options import Damaged, Json, RunPath
 
-__all__ = ["families"]
-
 
 def families(
     run: RunPath,

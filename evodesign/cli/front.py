@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from evodesign.analysis.choice import Choice
     from evodesign.runlog.run import RunLog
 
-__all__ = ["front", "print_front"]
-
 ROWS = 100
 """Most rows of a table that nobody limited."""
 

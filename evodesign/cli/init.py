@@ -8,8 +8,6 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["init"]
-
 
 def init(
     robot: Annotated[Path, typer.Argument(metavar="ROBOT", help="URDF or MJCF of a humanoid robot.")],
@@ -29,9 +27,10 @@ def init(
     from evodesign.cli.tables.guesses import guesses_table
     from evodesign.errors import InputError
     from evodesign.files import is_there
-    from evodesign.problem.guess.problem_text import FILL_IN, guessed_problem, inertia_rule
+    from evodesign.problem.guess.problem_text import guessed_problem, inertia_rule
     from evodesign.problem.meshes import with_meshes_beside
     from evodesign.problem.named_files import read_robot
+    from evodesign.problem.table import FILL_IN
     from evodesign.tree.urdf_read import InertiaRule, read_urdf
 
     file = to or Path(f"{robot.stem}.toml")

@@ -10,8 +10,6 @@ import typer
 from evodesign.cli.evaluate import chosen_design
 from evodesign.cli.options import CORES, Jobs, Json, ProblemPath, ProfileName, SymmetryName
 
-__all__ = ["lift"]
-
 
 def lift(
     problem: ProblemPath,

@@ -46,8 +46,6 @@ from evodesign.errors import AllFailed, EvodesignError, InputError, Interrupted
 from evodesign.interrupts import STOPPED
 from evodesign.streams import UNREAD
 
-__all__ = ["COMMANDS", "app", "main"]
-
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 COMMANDS: dict[str, Callable[..., None]] = {

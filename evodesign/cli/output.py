@@ -19,21 +19,6 @@ from evodesign.errors import InputError
 from evodesign.files import write_whole
 from evodesign.records import Objective
 
-__all__ = [
-    "console",
-    "heading",
-    "interval",
-    "markup",
-    "print_commands",
-    "print_json",
-    "print_lines",
-    "printable",
-    "rounded",
-    "show_notes",
-    "write_bytes",
-    "write_text",
-]
-
 PLAIN_WIDTH = 110
 """Columns of a table that is not shown on a terminal."""
 

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from evodesign.records import Genome
     from evodesign.runlog.run import RunLog
 
-__all__ = ["polish"]
-
 
 def polish(
     run: RunPath,

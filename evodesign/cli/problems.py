@@ -11,8 +11,6 @@ import typer
 
 from evodesign.cli.options import Json
 
-__all__ = ["problems"]
-
 
 def problems(
     name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="One of them, for --to.")] = None,

@@ -36,8 +36,6 @@ from evodesign.problem.time_left import PendingPiece, TimeLeft, in_words
 from evodesign.records import Evaluation, Generation, Objective, RunHeader, Sense, Status
 from evodesign.runlog.session_log import Observer
 
-__all__ = ["counted", "precompute_progress", "search_progress"]
-
 
 @contextmanager
 def search_progress() -> Iterator[Observer]:

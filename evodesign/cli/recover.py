@@ -9,8 +9,6 @@ import typer
 
 from evodesign.cli.options import Json, RunPath
 
-__all__ = ["recover"]
-
 
 def recover(
     run: RunPath,

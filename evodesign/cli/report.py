@@ -11,8 +11,6 @@ from evodesign.cli import damage
 from evodesign.cli.options import CORES, Damaged, Jobs, RunPath
 from evodesign.errors import InputError
 
-__all__ = ["report"]
-
 DEFAULT = "report.html"
 
 

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from evodesign.problem.build import DesignProblem
     from evodesign.reproduction.experiment import Experiment
 
-__all__ = ["reproduce"]
-
 FIRST, SEQUEL = 2022, 2023
 
 

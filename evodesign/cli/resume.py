@@ -9,8 +9,6 @@ import typer
 
 from evodesign.cli import options
 
-__all__ = ["resume"]
-
 
 def resume(
     run: options.RunPath,

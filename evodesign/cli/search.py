@@ -9,8 +9,6 @@ import typer
 
 from evodesign.cli import options
 
-__all__ = ["search"]
-
 
 def search(
     problem: options.ProblemPath,

@@ -12,8 +12,6 @@ from evodesign.cli.tables.result import chosen_designs, next_commands, result_li
 from evodesign.runlog.run import RunLog
 from evodesign.session import Display
 
-__all__ = ["DISPLAY", "show_result"]
-
 DISPLAY = Display(lambda note: show_notes([note]), precompute_progress, search_progress)
 """Shows a session on standard error."""
 

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from evodesign.records import Case
     from evodesign.report.opened_design import OpenedDesign
 
-__all__ = ["show"]
-
 
 def show(
     run: RunPath,

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from evodesign.report.opened_design import OpenedDesign
     from evodesign.tasks import Lift
 
-__all__ = ["simulate"]
-
 
 def simulate(
     run: RunPath,

@@ -8,8 +8,6 @@ import typer
 
 from evodesign.cli import damage, options
 
-__all__ = ["spread"]
-
 
 def spread(
     run: options.RunPath,

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from evodesign.cli.options import CORES, Jobs, Json, ProblemPath
 
-__all__ = ["starts"]
-
 
 def starts(problem: ProblemPath, jobs: Jobs = CORES, json: Json = False) -> None:
     """The starts from which a problem is solved, and how well they serve other designs."""

@@ -19,8 +19,6 @@ from evodesign.api.sessions import SECONDS_PER_HOUR
 from evodesign.cli.output import show_notes
 from evodesign.interrupts import INTERRUPTS
 
-__all__ = ["GRACE_SECONDS", "SignalledStop"]
-
 GRACE_SECONDS = 30.0
 """How long evaluations in flight may take to arrive after a stop was asked for."""
 

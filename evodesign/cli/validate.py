@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from evodesign.validation.compare import ComparedCase
     from evodesign.validation.measured import MeasuredCase
 
-__all__ = ["validate"]
-
 
 def validate(
     file: Annotated[
@@ -137,7 +135,8 @@ def _cases(
 
 
 def _person(stature: float | None, mass: float | None, sex: str | None) -> Person:
-    from evodesign.human.anthropometry import Person, Sex, ShoulderWidth
+    from evodesign.human.anthropometry import Person
+    from evodesign.human.anthropometry_tables import Sex, ShoulderWidth
 
     if stature is None or mass is None or sex is None:
         given = {"--stature": stature, "--mass": mass, "--sex": sex}

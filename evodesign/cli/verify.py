@@ -5,8 +5,6 @@ from __future__ import annotations
 from evodesign.cli.options import Json, RunPath
 from evodesign.errors import ResumeMismatch, RunError
 
-__all__ = ["verify"]
-
 
 def verify(run: RunPath, json: Json = False) -> None:
     """Check a run: every checksum and record, their order, what follows from them, and the replay."""

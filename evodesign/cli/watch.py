@@ -14,8 +14,6 @@ from evodesign.cli.options import RunPath
 if TYPE_CHECKING:
     from evodesign.report.live.state import FollowedRun
 
-__all__ = ["watch"]
-
 
 def watch(
     run: RunPath,

@@ -30,9 +30,6 @@ from evodesign.collision.triangles import (
 )
 from evodesign.tree.model import Tree
 
-__all__ = ["BodyDistance", "Indices", "PlacedSolids", "Places", "SolidBodies", "places_of"]
-
-
 UP = np.array([0.0, 0.0, 1.0])
 
 ACCURACY = 0.002

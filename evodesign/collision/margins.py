@@ -28,8 +28,6 @@ from evodesign.collision.supports import ConvexShape, shapes_of
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 
-__all__ = ["fitted_margins", "narrow_margins"]
-
 COARSE = 0.1
 """Share of postures in which fitted shapes are too near though the bodies are apart."""
 

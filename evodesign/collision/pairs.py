@@ -32,20 +32,6 @@ from evodesign.tree.frames import link_frames, link_poses
 from evodesign.tree.model import Joint, JointKind, Tree
 from evodesign.tree.symmetry import mirror_of
 
-__all__ = [
-    "JOINED",
-    "STILL",
-    "built_in_pairs",
-    "checked_pairs",
-    "collision_pairs",
-    "exempt_pairs",
-    "feet_pairs",
-    "holding_links",
-    "images_of",
-    "placed_in_postures",
-    "shares_of_postures",
-]
-
 HAND = 0.15
 """A hand's length [m]."""
 

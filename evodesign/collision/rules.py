@@ -7,8 +7,6 @@ from dataclasses import dataclass, field, replace
 
 from evodesign.body.placement import Vector
 
-__all__ = ["FLOOR", "LOAD", "PARTNER", "PLANES", "BodyPair", "CollisionRules"]
-
 BodyPair = tuple[str, str]
 """Names of two links; the second may be the load, the floor or the partner."""
 

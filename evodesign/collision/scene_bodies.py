@@ -15,8 +15,6 @@ from evodesign.collision.rules import FLOOR, LOAD, BodyPair
 from evodesign.collision.shapes import Array, box_solid
 from evodesign.tree.model import Tree
 
-__all__ = ["CheckedBodies", "SceneBodies"]
-
 PosesOf = Callable[[Sequence[str]], Array]
 """Rotation and origin [m] of some links, as matrices of shape (n, 4, 4)."""
 

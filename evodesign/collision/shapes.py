@@ -22,8 +22,6 @@ from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.tree.model import Link, Mesh
 from evodesign.tree.surface import Surface
 
-__all__ = ["ConvexSolid", "box_solid", "hull_corners", "solids_of"]
-
 Array = NDArray[np.float64]
 
 THIN = 1e-4  # [m]

@@ -31,8 +31,6 @@ from evodesign.collision.shapes import hull_corners
 from evodesign.tree.model import Link, Mesh
 from evodesign.tree.surface import Surface
 
-__all__ = ["ConvexShape", "shapes_of"]
-
 Array = NDArray[np.float64]
 
 UNSTRETCHED: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))

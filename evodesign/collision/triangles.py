@@ -21,15 +21,6 @@ from numpy.typing import NDArray
 from evodesign.tree.mesh_write import triangles_of, vertices_of
 from evodesign.tree.model import Mesh
 
-__all__ = [
-    "PlacedBody",
-    "Triangles",
-    "are_in_each_other",
-    "depth_along",
-    "distance_apart",
-    "triangles_in_link",
-]
-
 Array = NDArray[np.float64]
 
 FINE = 2e-4

@@ -23,8 +23,6 @@ from evodesign.collision.shapes import Array, solids_of
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 
-__all__ = ["built_in_slack", "distance_along"]
-
 
 def built_in_slack(tree: Tree, rules: CollisionRules | None) -> tuple[float, BodyDistance] | None:
     """By how much bodies that designs may bring together are farther apart than asked [m], and which two.

@@ -23,15 +23,6 @@ from evodesign.body.placement import Scalar
 from evodesign.hardware.actuators import Actuator, actuator_among, actuator_law
 from evodesign.records import Parameter, middle_of
 
-__all__ = [
-    "ALLOCATIONS",
-    "EFFORT_RATIO",
-    "ROBOT_SHARE",
-    "Allocation",
-    "DesignParameter",
-    "ParameterKind",
-]
-
 ROBOT_SHARE, EFFORT_RATIO = "robot_share", "effort_ratio"
 
 

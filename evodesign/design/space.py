@@ -14,9 +14,6 @@ from dataclasses import dataclass
 from evodesign.body.placement import Scalar
 from evodesign.design.parameter import (
     ALLOCATIONS,
-    EFFORT_RATIO,
-    ROBOT_SHARE,
-    Allocation,
     DesignParameter,
     ParameterKind,
 )
@@ -29,18 +26,6 @@ from evodesign.tree.model import Tree
 from evodesign.tree.resize import Growth, growth_of, resize
 from evodesign.tree.symmetry import mirror_of
 from evodesign.tree.welded import without_frames
-
-__all__ = [
-    "ALLOCATIONS",
-    "EFFORT_RATIO",
-    "ROBOT_SHARE",
-    "TYPICAL",
-    "Allocation",
-    "DesignParameter",
-    "DesignSpace",
-    "Family",
-    "ParameterKind",
-]
 
 TYPICAL = 10.0
 """What is asked of a sized actuator [N m] as long as nothing better is known."""

@@ -10,8 +10,6 @@ from evodesign.errors import ModelError
 from evodesign.tree.equip import WallOfLink
 from evodesign.tree.model import Tree
 
-__all__ = ["Wall", "check_walls", "walls_of_links"]
-
 
 @dataclass(frozen=True, slots=True)
 class Wall:

@@ -40,20 +40,6 @@ from evodesign.body.placement import Placement, Scalar
 from evodesign.body.shape import Solid, Sphere
 from evodesign.records import Record
 
-__all__ = [
-    "Actuator",
-    "ActuatorLaw",
-    "CatalogueRow",
-    "PowerLaw",
-    "actuator_among",
-    "actuator_law",
-    "actuator_of_row",
-    "catalogue",
-    "catalogue_sources",
-    "fitted_power_law",
-    "mounted_solid",
-]
-
 LEAST_RATIO = 12.0
 """Ratio of the gear from which on an actuator belongs to the law's family: two planetary stages."""
 

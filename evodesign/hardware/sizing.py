@@ -25,8 +25,6 @@ from numpy.typing import NDArray
 
 from evodesign.records import Status
 
-__all__ = ["ROUNDS", "TOLERANCE", "Sizing", "sized", "sizes_met"]
-
 TOLERANCE = 1e-4
 """Largest change of a size, as a share of it, that ends the rounds."""
 

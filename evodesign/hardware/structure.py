@@ -24,21 +24,6 @@ from typing import Final
 
 from evodesign.body.placement import Scalar
 
-__all__ = [
-    "STRENGTHS",
-    "MaterialStrength",
-    "RectangularTube",
-    "RoundTube",
-    "Section",
-    "SectionLoad",
-    "bending_work",
-    "buckling_force",
-    "safety_factor",
-    "torsion_work",
-    "von_mises",
-    "wall_buckling_stress",
-]
-
 WALL_BUCKLING = 0.605
 """Critical stress of a perfect tube's wall in units of E t/R."""
 

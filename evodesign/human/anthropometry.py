@@ -20,17 +20,6 @@ from evodesign.body.placement import Vector, add, scale
 from evodesign.errors import InputError
 from evodesign.human.anthropometry_tables import Sex, ShoulderWidth, tables
 
-__all__ = [
-    "PAIRED_SEGMENTS",
-    "SEGMENTS",
-    "Person",
-    "Sex",
-    "ShoulderWidth",
-    "landmarks",
-    "segments",
-    "sole_size",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Person:

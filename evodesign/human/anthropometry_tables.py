@@ -15,18 +15,6 @@ import msgspec
 
 from evodesign.records import Record
 
-__all__ = [
-    "Articulation",
-    "AxisRange",
-    "BodySegment",
-    "Column",
-    "Sex",
-    "ShoulderWidth",
-    "Tables",
-    "figures",
-    "tables",
-]
-
 R = TypeVar("R", bound=Record)
 
 

@@ -27,8 +27,6 @@ from evodesign.human.anthropometry import Person
 from evodesign.human.anthropometry_tables import tables
 from evodesign.tree.model import Look
 
-__all__ = ["human_looks"]
-
 ALONG_Y: Matrix = ((1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
 """Rotation that lays a cylinder's axis along y."""
 

@@ -17,8 +17,6 @@ abstract was read).
 
 from __future__ import annotations
 
-__all__ = ["ACTION_LIMIT", "FLEXION", "LUMBAR", "MUSCLE_LEVER"]
-
 LUMBAR = "jL5S1_"
 """How the names of the joints begin that cross the disc."""
 

@@ -20,22 +20,10 @@ from collections.abc import Mapping, Sequence
 
 from evodesign.body.inertia import Inertia, total
 from evodesign.body.placement import Matrix, Placement, Vector, add, mirrored_point, scale
-from evodesign.human.anthropometry import Person, Sex, landmarks, segments, sole_size
+from evodesign.human.anthropometry import Person, landmarks, segments
 from evodesign.human.anthropometry_tables import Articulation, tables
 from evodesign.human.appearance import human_looks
 from evodesign.tree.model import Joint, JointKind, Link, Look, Tree
-
-__all__ = [
-    "DEFAULT_JOINTS",
-    "HANDS",
-    "SOLES",
-    "TRUNK",
-    "Person",
-    "Sex",
-    "human_tree",
-    "right_name",
-    "sole_size",
-]
 
 HANDS: Mapping[str, str] = {"left": "LeftPalm", "right": "RightPalm"}
 """Frames that grasp: at the third metacarpal, axes as the hand's."""

@@ -18,8 +18,6 @@ from functools import cache
 from evodesign.human.anthropometry_tables import figures
 from evodesign.records import Record
 
-__all__ = ["CoupledJoints", "Rhythm", "SharedRanges", "coupled_joints", "rhythms", "shared_ranges"]
-
 
 class SharedRange(Record, frozen=True):
     """A range of the sum of joints' positions [degrees], and the key of its source."""

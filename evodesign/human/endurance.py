@@ -20,8 +20,6 @@ from evodesign.human.body import LEFT, RIGHT
 from evodesign.human.strength import JointStrength, RelativeTorque, relative_torques
 from evodesign.records import Record
 
-__all__ = ["Endurance", "endurance", "endurance_tables", "holding_time"]
-
 
 class EnduranceCurve(Record, frozen=True):
     """A power model: seconds at full strength, and the exponent of the share."""

@@ -27,28 +27,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = [
-    "ASSUMPTION",
-    "FEATURES",
-    "MARK",
-    "MEAN_PERSON",
-    "NEEDED_JOINTS",
-    "NEEDED_LINKS",
-    "SIDES",
-    "SPINE",
-    "USUAL_POSTURE",
-    "WEIGHT",
-    "Gaussians",
-    "HumanPosture",
-    "MeasuredPosture",
-    "PostureRow",
-    "drawn_person",
-    "gaussians",
-    "measured_posture",
-    "posture_rows",
-    "unmeasured_heights",
-]
-
 Array = NDArray[np.float64]
 
 FEATURES = ("trunk_low", "trunk_up", "knee", "shank", "arm", "elbow", "ahead", "sideways")

@@ -20,8 +20,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-__all__ = ["Coupling", "Duration", "LiftingTask", "NioshMultipliers", "multipliers"]
-
 LOAD_CONSTANT = 23.0
 """LC [kg]: what is recommended where every multiplier is one."""
 

@@ -22,8 +22,6 @@ from evodesign.human.anthropometry import Person
 from evodesign.human.anthropometry_tables import Sex, figures
 from evodesign.records import Record
 
-__all__ = ["Distribution", "PopulationSex", "PopulationTable", "population", "population_table"]
-
 
 class PopulationSex(StrEnum):
     """Whose percentiles are taken."""

@@ -17,8 +17,6 @@ from evodesign.body.shape import Box
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 
-__all__ = ["feet_apart", "trunk_clearance"]
-
 LEG_OUTWARDS = math.radians(20.0)
 """Largest angle of a leg from upright, to the side: our choice, half of what hip joints allow."""
 

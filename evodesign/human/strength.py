@@ -23,18 +23,6 @@ from evodesign.human.anthropometry_tables import Sex, figures
 from evodesign.human.body import right_name
 from evodesign.records import Record
 
-__all__ = [
-    "JointStrength",
-    "RelativeTorque",
-    "Scale",
-    "Strength",
-    "joint_strengths",
-    "largest_relative_torque",
-    "relative_torques",
-    "strength_tables",
-    "with_given",
-]
-
 NEWTONS_PER_KILOGRAM = 9.81
 """Body weight over body mass, where a source divides a moment by body weight."""
 

@@ -19,8 +19,6 @@ from functools import cache
 from evodesign.human.anthropometry_tables import figures
 from evodesign.records import Record
 
-__all__ = ["ArmSeen", "BodySeen", "HeldLoad", "Score", "reba", "rula", "worksheets"]
-
 UNSEEN = 5.0
 """Angle [degrees] that an observer takes for none."""
 

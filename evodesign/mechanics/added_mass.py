@@ -19,8 +19,6 @@ from numpy.typing import NDArray
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.floating_base import ROOT, FloatingBody
 
-__all__ = ["AddedMasses", "joint_slopes"]
-
 Array = NDArray[np.float64]
 
 

@@ -23,8 +23,6 @@ import casadi as ca
 from evodesign.tree.kinematics import Expression, Pose, forward, vector
 from evodesign.tree.model import JointKind, Tree
 
-__all__ = ["GRAVITY", "AppliedWrench", "Balance", "center_of_mass", "cut", "standing_height_of_mass"]
-
 GRAVITY = 9.81
 """Gravitational acceleration [m/s^2], along -z of the world."""
 

@@ -19,8 +19,6 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["Ground", "SoleSize", "foot_margins"]
-
 Expression = Any
 
 

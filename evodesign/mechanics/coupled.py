@@ -28,9 +28,6 @@ from evodesign.mechanics.floating_base import ROOT, Array, BodyState, Configurat
 from evodesign.mechanics.scene import SIDES, Agent, Grasp, Scene
 from evodesign.tree.model import Tree
 
-__all__ = ["AT_REST", "PAYLOAD", "Contact", "ContactKind", "CoupledModel", "CoupledSystem", "level_load"]
-
-
 PAYLOAD = "payload"
 """Name of the load among the parts of the system, beside the agents' names."""
 

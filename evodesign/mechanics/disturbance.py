@@ -12,8 +12,6 @@ from enum import StrEnum
 
 from evodesign.body.placement import Vector
 
-__all__ = ["Disturbance", "Disturbances", "OverCases", "PushedAt"]
-
 
 class PushedAt(StrEnum):
     """What a push meets: the load at its box's centre, or an agent at the last frame of its trunk."""

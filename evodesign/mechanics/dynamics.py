@@ -32,18 +32,6 @@ from evodesign.body.placement import Matrix
 from evodesign.tree.kinematics import Expression, Pose, forward, vector
 from evodesign.tree.model import Joint, JointKind, Tree
 
-__all__ = [
-    "ROOT_ROWS",
-    "LinkMotion",
-    "bias",
-    "has_mass",
-    "inverse_dynamics",
-    "link_motions",
-    "mass_matrix",
-    "needed_wrench",
-]
-
-
 ROOT_ROWS = 6
 """Rows of nu that belong to the root link; the joints follow."""
 

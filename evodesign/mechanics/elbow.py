@@ -16,8 +16,6 @@ from evodesign.body.placement import Vector, dot, scale
 from evodesign.mechanics.scene import SIDES, Agent
 from evodesign.tree.model import Joint, JointKind, Tree
 
-__all__ = ["Elbow", "elbow"]
-
 REACH = 0.45
 """Of the humanoids that tests look at, wrists have a share of at most 0.35 and elbows of at least 0.55."""
 

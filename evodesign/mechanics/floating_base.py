@@ -25,8 +25,6 @@ from evodesign.body.shape import Solid
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.tree.model import Joint, JointKind, Tree
 
-__all__ = ["ROOT", "BodyState", "Configuration", "FloatingBody"]
-
 Array = NDArray[np.float64]
 
 ROOT = 6

@@ -18,8 +18,6 @@ from evodesign.mechanics.dynamics import LinkMotion, has_mass, link_motions, nee
 from evodesign.tree.kinematics import Expression, Pose, euler_rotation
 from evodesign.tree.model import Tree
 
-__all__ = ["euler_motion", "inertial_wrenches"]
-
 
 def inertial_wrenches(
     tree: Tree,

@@ -41,8 +41,6 @@ from evodesign.tree.equip import actuators_of
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 
-__all__ = ["Beam", "Wrench", "beams_of", "hand_deflection", "safety_factors"]
-
 Array = NDArray[np.float64]
 
 ALONG = 0.7

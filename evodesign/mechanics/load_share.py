@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import SIDES, Agent, Grasp, Scene
 
-__all__ = ["share_interval"]
-
 Array = NDArray[np.float64]
 
 FAR = 10.0

@@ -26,8 +26,6 @@ from evodesign.mechanics.scene import SIDES, Agent
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Link, Tree
 
-__all__ = ["LoadTorques", "NormSlopes", "load_torques"]
-
 Array = NDArray[np.float64]
 
 BASE, HANDS = 6, 12

@@ -27,8 +27,6 @@ from evodesign.mechanics.scene import SIDES, Agent
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Tree
 
-__all__ = ["LumbarLoad", "has_lumbar_disc", "lumbar_load"]
-
 Array = NDArray[np.float64]
 
 

@@ -29,17 +29,6 @@ import numpy as np
 from evodesign.mechanics.coupled import CoupledSystem
 from evodesign.mechanics.floating_base import Array
 
-__all__ = [
-    "MASS_FLOOR",
-    "RANK_CUTOFF",
-    "center_of_pressure",
-    "constrained_accelerations",
-    "constraint_projector",
-    "contact_wrenches",
-    "projected_torques",
-]
-
-
 RANK_CUTOFF = 1e-8
 """Singular values of A and N B below this share of the largest count as zero.
 

@@ -24,20 +24,6 @@ from evodesign.mechanics.disturbance import Disturbance, Disturbances
 from evodesign.records import Case, Task
 from evodesign.tree.model import Tree
 
-__all__ = [
-    "HUMAN",
-    "ROBOT",
-    "SIDES",
-    "WRIST_MOMENT",
-    "Agent",
-    "Grasp",
-    "GraspDirection",
-    "Payload",
-    "Scene",
-    "StanceLimits",
-    "scene_of",
-]
-
 ROBOT, HUMAN = "robot", "human"
 SIDES = ("left", "right")
 DIAGONAL = math.sqrt(0.5)

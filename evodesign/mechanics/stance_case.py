@@ -29,8 +29,6 @@ from evodesign.mechanics.added_mass import AddedMasses, joint_slopes
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.floating_base import ROOT, FloatingBody
 
-__all__ = ["RaisedHand", "StanceCase", "StanceTorques", "stance_slopes", "stance_torques"]
-
 Array = NDArray[np.float64]
 
 STEPS, DIFFERENCE, OVER = 30, 1e-6, 1e-10

@@ -30,8 +30,6 @@ from evodesign.posture.results import AgentPosture, Instant
 from evodesign.posture.symmetry import whole
 from evodesign.posture.terms.base import Residual
 
-__all__ = ["BETWEEN", "CheckedLift", "LiftChecker", "fine_times"]
-
 Array = NDArray[np.float64]
 
 BETWEEN = 4

@@ -16,8 +16,6 @@ from evodesign.posture.results import AgentPosture, Instant
 from evodesign.posture.symmetry import Form
 from evodesign.records import Lift
 
-__all__ = ["LiftCourse"]
-
 Array = NDArray[np.float64]
 
 

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from evodesign.nlp.sensitivity import Limit, no_limits
 from evodesign.posture.results import AgentPosture, Instant
 
-__all__ = ["LiftDerivative"]
-
 Array = NDArray[np.float64]
 
 

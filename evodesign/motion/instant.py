@@ -56,8 +56,6 @@ from evodesign.posture.terms.measured_posture import any_person, person_paramete
 from evodesign.posture.terms.registry import TERMS
 from evodesign.tree.model import Tree
 
-__all__ = ["FastestJoint", "KnotBlocks", "fastest_joints"]
-
 SPEED = 6.0
 """Largest speed of a joint whose file or actuator says none [rad/s]."""
 

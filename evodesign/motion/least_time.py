@@ -34,8 +34,6 @@ from evodesign.nlp.solver import status_of
 from evodesign.posture.results import Attempt
 from evodesign.records import Lift, Status
 
-__all__ = ["LeastTime", "LeastTimes"]
-
 Array = NDArray[np.float64]
 
 TOLERANCE = 1e-10

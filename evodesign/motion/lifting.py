@@ -35,8 +35,6 @@ from evodesign.posture.results import AgentPosture, Attempt, CaseSolution
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.records import Lift, Status, worst_status
 
-__all__ = ["MOVED", "LiftProblem", "lift_program", "lift_starts", "moved_posture"]
-
 Array = NDArray[np.float64]
 
 REFINEMENTS = 3

@@ -22,8 +22,6 @@ from evodesign.posture.parting import Meetings
 from evodesign.posture.terms.collisions import NUMBERS
 from evodesign.records import Lift, Status
 
-__all__ = ["LiftSolve", "PartedLift"]
-
 GAIN = 1e-4
 """Share of its cost by which a motion must get better to be solved again."""
 

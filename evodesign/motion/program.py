@@ -27,8 +27,6 @@ from evodesign.posture.results import AgentPosture
 from evodesign.records import Lift
 from evodesign.tasks.lift import LoadProfile
 
-__all__ = ["LiftProgram", "LiftStart"]
-
 Array = NDArray[np.float64]
 
 FARTHEST, LOWEST, HIGHEST = 3.0, 0.05, 3.0

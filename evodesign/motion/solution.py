@@ -16,8 +16,6 @@ from evodesign.nlp.method import Ending
 from evodesign.posture.results import Attempt, CaseSolution
 from evodesign.records import Case, Lift, Status
 
-__all__ = ["AgentEffort", "LiftSolution", "MotionCase"]
-
 Array = NDArray[np.float64]
 
 

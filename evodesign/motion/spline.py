@@ -18,8 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 
-__all__ = ["RestingSpline"]
-
 Array = NDArray[np.float64]
 DEGREE = 3
 

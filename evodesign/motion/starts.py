@@ -33,8 +33,6 @@ from evodesign.posture.precompute.precomputed import NO_STARTS, Precomputed
 from evodesign.posture.results import AgentPosture
 from evodesign.records import Hold, Lift, Status
 
-__all__ = ["lift_portfolio"]
-
 TRAINING = Training(designs=4, begun=4, random=8, portfolio=4)
 
 LOOKED_AT = 40

@@ -13,8 +13,6 @@ from queue import SimpleQueue
 from threading import Thread
 from typing import Any, TypeVar
 
-__all__ = ["in_background"]
-
 T = TypeVar("T")
 Orders = SimpleQueue[tuple[Future[Any], Callable[[], Any]]]
 

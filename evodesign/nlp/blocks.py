@@ -24,8 +24,6 @@ import numpy as np
 
 from evodesign.nlp.program import Array, Expression
 
-__all__ = ["Block", "Repeated", "stacked_limits"]
-
 
 @dataclass(frozen=True)
 class Block:

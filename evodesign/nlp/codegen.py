@@ -25,18 +25,6 @@ from evodesign.identity import code_digest, digest
 from evodesign.nlp.compiler import Compiler, NotCompiled, error_in, find_compiler, run
 from evodesign.nlp.disk_cache import Cache, user_cache
 
-__all__ = [
-    "FUNCTION_FLAGS",
-    "CompiledFunctions",
-    "Library",
-    "built",
-    "compiled_function",
-    "compiled_functions",
-    "compiler_and_cache",
-    "kept_library",
-    "library",
-]
-
 Expression = Any
 
 FUNCTION_FLAGS = ("-Og", "-shared", "-fPIC", "-ffp-contract=off")

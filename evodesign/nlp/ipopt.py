@@ -12,8 +12,6 @@ from evodesign.nlp.compiler import NotCompiled
 from evodesign.nlp.method import NEAR_BARRIER, NEAR_PUSH, Ending, MethodName, SolverOptions
 from evodesign.nlp.program import Array, Program
 
-__all__ = ["Ipopt", "casadi_options"]
-
 
 class Ipopt:
     """A program made ready to be solved by IPOPT.

@@ -13,18 +13,6 @@ from evodesign.nlp.program import Start
 from evodesign.nlp.solver import RawSolution, Solver, has_any
 from evodesign.records import Status
 
-__all__ = [
-    "NEAR",
-    "Costs",
-    "Design",
-    "End",
-    "Landscape",
-    "Searched",
-    "StartResult",
-    "cost_of",
-    "spread_designs",
-]
-
 NEAR = (0.01, 1e-4)
 """How far above the best optimum of a posture another one is still good: 1 %; near zero 0.1 N m."""
 

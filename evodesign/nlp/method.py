@@ -13,8 +13,6 @@ from evodesign.nlp.codegen import CompiledFunctions, Library
 from evodesign.nlp.compiler import NotCompiled
 from evodesign.nlp.program import Array
 
-__all__ = ["NEAR_BARRIER", "NEAR_PUSH", "Ending", "Method", "MethodName", "SolverOptions"]
-
 NEAR_BARRIER = 1e-8
 """Barrier parameter of a solve that begins at a solution."""
 

@@ -28,17 +28,6 @@ from scipy.linalg.lapack import dtrtrs
 from evodesign.nlp.buffered import BufferedFunction
 from evodesign.nlp.program import Program
 
-__all__ = [
-    "COMPLEMENTARY",
-    "Change",
-    "Conditions",
-    "Derivatives",
-    "NotDifferentiable",
-    "PrimalDual",
-    "error",
-    "moved",
-]
-
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Places = NDArray[np.intp]

@@ -15,8 +15,6 @@ from typing import Any, Protocol
 import casadi as ca
 import numpy as np
 
-__all__ = ["ConstraintBlock", "Program", "Start", "Switches", "Variable"]
-
 Array = Any
 Expression = Any
 

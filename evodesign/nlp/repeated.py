@@ -22,8 +22,6 @@ from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Array, Expression
 from evodesign.nlp.repeated_slopes import central_differences, solution_slopes
 
-__all__ = ["RepeatedProgram"]
-
 EXACTLY = (1e-12, 1e-10)
 """Tolerances with which a solution is found again to be differentiated; the second where the first is beyond
 what rounding leaves."""

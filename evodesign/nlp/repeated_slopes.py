@@ -27,8 +27,6 @@ from scipy.sparse.linalg import splu
 from evodesign.nlp.optimality import COMPLEMENTARY, NotDifferentiable
 from evodesign.nlp.program import Array
 
-__all__ = ["central_differences", "solution_slopes"]
-
 LEAST_DISTANCE = 1e-12
 """Of an inequality from its limit, in the program's own units; bounds are relaxed by 1e-8."""
 

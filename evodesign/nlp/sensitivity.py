@@ -36,8 +36,6 @@ from evodesign.nlp.program import Program
 from evodesign.nlp.solver import RawSolution, Solver, has_any
 from evodesign.records import Status
 
-__all__ = ["Limit", "LimitTable", "Optimum", "SolutionSensitivity", "no_limits"]
-
 Places = NDArray[np.intp]
 
 NEAR_TOLERANCE = 1e-10

@@ -20,19 +20,6 @@ from evodesign.nlp.native.library import native_method
 from evodesign.nlp.program import Array, Program, Start
 from evodesign.records import Status
 
-__all__ = [
-    "Multipliers",
-    "RawSolution",
-    "Solver",
-    "SolverCache",
-    "SolverOptions",
-    "after",
-    "available",
-    "has_any",
-    "own_solvers",
-    "status_of",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Multipliers:

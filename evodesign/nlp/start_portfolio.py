@@ -6,8 +6,6 @@ import msgspec
 
 from evodesign.nlp.program import Start
 
-__all__ = ["Coverage", "StartPortfolio"]
-
 
 class Coverage(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How well a portfolio serves designs that it was not made from.

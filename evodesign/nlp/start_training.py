@@ -24,9 +24,6 @@ from evodesign.nlp.landscape import Costs, Design, End, Searched, cost_of
 from evodesign.nlp.program import Start
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 
-__all__ = ["USUAL", "Training", "start_portfolio"]
-
-
 SAME = 1e-3
 """Share of their costs by which two optima of one design differ at most that are one."""
 

@@ -12,8 +12,6 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Generic, Protocol, Self, TypeVar, runtime_checkable
 
-__all__ = ["Factory", "Finished", "Limited", "Limits", "Pool", "limits_of"]
-
 A = TypeVar("A")
 R = TypeVar("R")
 Factory = Callable[[], Callable[[A], R]]

@@ -35,9 +35,6 @@ from evodesign.pool.worker import explain
 from evodesign.pool.worker_group import WorkerGroup
 from evodesign.pool.worker_process import WorkerProcess
 
-__all__ = ["DaskPool"]
-
-
 HANDED_OUT_PER_THREAD = 2
 """One argument that runs and one that is prefetched."""
 

@@ -16,8 +16,6 @@ from typing import Protocol, TypeVar
 
 from evodesign.pool.base import A, Factory, Finished, Pool, R
 
-__all__ = ["WorkerSet", "ends_of", "run_stoppable"]
-
 A_in = TypeVar("A_in", contravariant=True)
 
 

@@ -15,8 +15,6 @@ from evodesign.pool.dispatch import ends_of
 from evodesign.pool.worker_group import WorkerGroup
 from evodesign.pool.worker_process import WorkerProcess
 
-__all__ = ["JoblibPool"]
-
 
 class JoblibPool(Pool):
     """Runs in processes, each with one thread for numerical libraries.

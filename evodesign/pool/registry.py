@@ -12,8 +12,6 @@ from evodesign.errors import InputError, nearest_name
 from evodesign.pool.base import Pool
 from evodesign.pool.worker import SerialPool
 
-__all__ = ["POOLS", "PoolSettings", "make_pool"]
-
 
 def never() -> bool:
     """A stop that is never asked for."""

@@ -22,9 +22,6 @@ from typing import Any, Generic
 
 from evodesign.pool.base import A, Factory, Finished, Pool, R
 
-__all__ = ["SerialPool", "Workbench", "build_here", "explain", "finish_here", "start_worker"]
-
-
 ORPHAN_CHECK = 1.0
 """Interval [s] at which a worker looks whether its parent still lives."""
 

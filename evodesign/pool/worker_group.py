@@ -16,9 +16,6 @@ from typing import Generic
 from evodesign.pool.base import A, Finished, R
 from evodesign.pool.worker_process import WorkerProcess
 
-__all__ = ["WorkerGroup"]
-
-
 LOOK_EVERY = 0.2
 """Interval [s] at which limits are looked at: a new worker's begins when its task is built."""
 

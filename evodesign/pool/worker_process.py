@@ -27,9 +27,6 @@ from joblib.externals.loky.process_executor import (
 from evodesign.pool.base import A, Factory, Finished, R, limits_of
 from evodesign.pool.worker import build_here, explain, finish_here, start_worker
 
-__all__ = ["WorkerProcess"]
-
-
 ONE_THREAD = dict.fromkeys(
     (
         "OMP_NUM_THREADS",

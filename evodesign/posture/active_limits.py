@@ -38,8 +38,6 @@ from evodesign.nlp.solver import RawSolution, has_any
 from evodesign.posture.terms.base import TORQUE_UNIT, Bound
 from evodesign.records import ActiveLimit
 
-__all__ = ["LimitSlopes", "Slopes", "merge", "priced"]
-
 Array = NDArray[np.float64]
 
 HOLDS = 1e-5

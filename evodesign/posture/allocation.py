@@ -12,10 +12,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from evodesign.body.placement import Scalar
-from evodesign.design.space import EFFORT_RATIO, ROBOT_SHARE, DesignSpace
+from evodesign.design.parameter import EFFORT_RATIO, ROBOT_SHARE
+from evodesign.design.space import DesignSpace
 from evodesign.mechanics.scene import Scene
-
-__all__ = ["EffortWeights", "shared_scene", "shared_weights"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,20 +42,6 @@ from evodesign.tree.equip import actuators_of
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Tree
 
-__all__ = [
-    "MOVING_PARTS",
-    "Assembly",
-    "CaseSymbols",
-    "Embodied",
-    "FreeHands",
-    "LoadCase",
-    "PostureMotion",
-    "Slot",
-    "assemble",
-    "free_hands_beside",
-]
-
-
 EVERYTHING = Enforced()
 
 JOINTS = "joints"

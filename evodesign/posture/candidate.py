@@ -14,9 +14,6 @@ from evodesign.posture.results import Attempt, CaseSolution, Instant
 from evodesign.posture.terms.base import Residual
 from evodesign.records import Case, Status, worst_status
 
-__all__ = ["DISTINCT", "Candidate", "Finishing", "Trial", "case_solution", "cheapest", "checked"]
-
-
 DISTINCT = 1e-5
 """Share of its cost by which one optimum must exceed another not to be the same."""
 

@@ -27,18 +27,6 @@ from evodesign.posture.terms.registry import TERMS
 from evodesign.tree.equip import actuators_of, rated_torques
 from evodesign.tree.model import Tree
 
-__all__ = [
-    "AT_REST",
-    "TOLERANCE",
-    "AgentModel",
-    "AgentMotion",
-    "Checker",
-    "SceneMotion",
-    "Unchecked",
-    "near_bodies",
-    "sizes",
-]
-
 TOLERANCE = 1e-5
 """Largest residual of a posture that counts as solved, in SI units."""
 

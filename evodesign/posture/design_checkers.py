@@ -9,8 +9,6 @@ from evodesign.design.space import DesignSpace
 from evodesign.mechanics.scene import Agent, Scene
 from evodesign.posture.check import AgentModel, Checker
 
-__all__ = ["DesignCheckers", "can_be_built"]
-
 
 def can_be_built(robot: Agent, space: DesignSpace) -> Callable[[Sequence[float]], bool]:
     """Whether the build of a design leaves bodies apart: a function of what programs are given of it."""

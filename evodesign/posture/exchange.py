@@ -18,8 +18,6 @@ from evodesign.posture.assemble import Slot
 from evodesign.posture.results import Array
 from evodesign.posture.symmetry import Form
 
-__all__ = ["Exchange"]
-
 PROMISE = 0.95
 """Share of the least effort found that a pair must promise to be tried.
 

@@ -9,8 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-__all__ = ["Enforced", "LimitGroup"]
-
 
 class LimitGroup(StrEnum):
     """What a limit is about; the value is how a file and a sentence call it."""

@@ -26,9 +26,6 @@ from evodesign.mechanics.disturbance import OverCases
 from evodesign.nlp.buffered import BufferedFunction
 from evodesign.nlp.program import ConstraintBlock, Expression, Program, Start, Variable
 
-__all__ = ["WorstCase", "aggregated", "counted_together"]
-
-
 SHARE_OF_MEAN = 0.01
 """e: what the mean counts beside the worst case."""
 

@@ -22,8 +22,6 @@ from evodesign.posture.terms.measured_posture import chords
 from evodesign.posture.warm_start import layout_of
 from evodesign.tree.frames import link_frames
 
-__all__ = ["POSTURE", "mean_posture", "measured_starts", "posture_of_features"]
-
 ELSEWHERE = (0.20, 0.35)
 """Heights of the palms over stature at which people stoop: their means are starts at any height."""
 

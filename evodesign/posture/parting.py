@@ -26,8 +26,6 @@ from evodesign.posture.terms.collisions import (
     placed_pairs,
 )
 
-__all__ = ["ALMOST", "Meetings", "Parted", "PartedBody", "meetings_of", "parted", "rows_of"]
-
 Array = NDArray[np.float64]
 Places = NDArray[np.intp]
 

@@ -9,8 +9,6 @@ import casadi as ca
 from evodesign.collision.supports import ConvexShape
 from evodesign.tree.kinematics import Expression, Pose, vector
 
-__all__ = ["ROUNDING", "SHAPE", "PlacedShape", "Plane", "placed_shape"]
-
 SHAPE = 36
 """Numbers of a placed shape: centre, axes, box, disc, ball."""
 

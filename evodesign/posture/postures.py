@@ -30,8 +30,6 @@ from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.records import ActiveLimit, Status
 from evodesign.tasks import Task, TaskRecord
 
-__all__ = ["DECOUPLED", "SYMMETRIC", "WHOLE", "PostureProblem", "Symmetry"]
-
 DECOUPLED, SYMMETRIC, WHOLE = "decoupled", "symmetric", "whole"
 """Names of the formulations in results."""
 

@@ -12,8 +12,6 @@ from evodesign.nlp.method import MethodName
 from evodesign.nlp.solver import RawSolution
 from evodesign.records import Case, Status
 
-__all__ = ["AgentPosture", "Attempt", "CaseSolution", "Instant", "Neighbour"]
-
 Array = NDArray[np.float64]
 
 

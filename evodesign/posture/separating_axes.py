@@ -24,8 +24,6 @@ from evodesign.nlp.codegen import compiled_function
 from evodesign.posture.placed_shape import SHAPE, PlacedShape
 from evodesign.posture.terms.collisions import NUMBERS
 
-__all__ = ["Ways", "ways_of"]
-
 Array = NDArray[np.float64]
 Expression = Any
 

@@ -21,8 +21,6 @@ from evodesign.posture.results import CaseSolution, Instant
 from evodesign.posture.symmetry import Form
 from evodesign.posture.warm_start import Layout, instants_of
 
-__all__ = ["PostureDerivative", "ReachDerivative", "found_again"]
-
 SAME = 1e-2
 """Difference of torques [N m] below which a posture that is found again is the same one."""
 

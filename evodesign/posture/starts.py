@@ -13,17 +13,6 @@ from evodesign.nlp.solver import Solver
 from evodesign.posture.assemble import Slot
 from evodesign.posture.results import Array
 
-__all__ = [
-    "PEOPLE",
-    "STARTS_BESIDE",
-    "different_people",
-    "fixed_starts",
-    "named_starts",
-    "person_starts",
-    "universal_starts",
-]
-
-
 STARTS_BESIDE = 2
 """Starts of the portfolio beside a neighbour's solution, which mostly leads to the best optimum by itself."""
 

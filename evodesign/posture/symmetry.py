@@ -24,10 +24,9 @@ from evodesign.mechanics.disturbance import Disturbance, PushedAt
 from evodesign.mechanics.scene import SIDES, Agent, Scene
 from evodesign.posture.results import AgentPosture, Array
 from evodesign.tree.frames import link_frames
+from evodesign.tree.mirror_pairs import Mirror
 from evodesign.tree.model import Tree
-from evodesign.tree.symmetry import Mirror, left_half, mirror_of
-
-__all__ = ["Form", "half", "symmetric_forms", "whole"]
+from evodesign.tree.symmetry import left_half, mirror_of
 
 POLAR = np.array([1.0, -1.0, 1.0])
 WRENCH = np.concatenate([POLAR, -POLAR])

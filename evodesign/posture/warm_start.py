@@ -13,9 +13,6 @@ from evodesign.posture.assemble import Slot
 from evodesign.posture.results import AgentPosture, Instant
 from evodesign.posture.symmetry import Form
 
-__all__ = ["Layout", "filled", "instants_of", "layout_of", "start_from"]
-
-
 Layout = Mapping[Slot, str]
 """Names of variables by where they belong."""
 

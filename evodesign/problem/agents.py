@@ -13,8 +13,9 @@ import msgspec
 
 from evodesign.body.placement import Placement, transpose
 from evodesign.errors import InputError, nearest_name
-from evodesign.human.anthropometry import Person, ShoulderWidth
-from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
+from evodesign.human.anthropometry import Person, sole_size
+from evodesign.human.anthropometry_tables import ShoulderWidth
+from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree
 from evodesign.human.population import population
 from evodesign.human.strength import joint_strengths, with_given
 from evodesign.mechanics.contact import SoleSize
@@ -37,14 +38,6 @@ from evodesign.problem.torque_limits import torque_limits
 from evodesign.records import ProblemSource
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.urdf_read import InertiaRule, read_urdf
-
-__all__ = [
-    "everyone",
-    "human_agents",
-    "refuse_unknown",
-    "refuse_unrated",
-    "robot_agent",
-]
 
 
 def robot_agent(tables: ProblemFile, source: ProblemSource) -> Agent:

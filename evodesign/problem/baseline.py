@@ -17,7 +17,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from evodesign.design.space import EFFORT_RATIO
+from evodesign.design.parameter import EFFORT_RATIO
 from evodesign.errors import InputError
 from evodesign.mechanics.coupled import PAYLOAD, CoupledModel, level_load
 from evodesign.mechanics.floating_base import Configuration
@@ -35,17 +35,6 @@ from evodesign.problem.design_space import refuse_choices
 from evodesign.problem.evaluate import case_outcome, detail_of, reach_of
 from evodesign.problem.objectives import objective_values
 from evodesign.records import Assessed, Assessment, Genome, Hold, ProblemSource, Status
-
-__all__ = [
-    "GENERATION",
-    "Baseline",
-    "BaselineFactory",
-    "broken_limits",
-    "held_at",
-    "refuse_unsuited",
-    "torque_difference",
-]
-
 
 GENERATION = 10
 """Starts after which a log says how things stand."""

@@ -8,8 +8,6 @@ from msgspec import Meta
 
 from evodesign.problem.table import Name, NotNegative, Positive, Table
 
-__all__ = ["BaselineTable", "TaskWeightsTable"]
-
 
 class TaskWeightsTable(Table, frozen=True):
     """`[baseline.weights]`: W1 to W4 of the paper's tasks.

@@ -30,8 +30,6 @@ from evodesign.records import CaseDetail
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.model import Tree
 
-__all__ = ["bill_of_materials"]
-
 Asked = tuple[str, dict[str, float], bool]
 """A case's name, what it asks of each joint [N m], and whether for a moment only."""
 

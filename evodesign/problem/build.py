@@ -62,8 +62,6 @@ from evodesign.records import (
 )
 from evodesign.searches.base import GRADIENT_SEARCHES, JOINT_STARTS, POPULATIONS, USUAL_POPULATION
 
-__all__ = ["DesignProblem", "build_problem"]
-
 BELOW = 0.1
 """How far below the lowest height of a task it is asked whether the robot holds the load [m]."""
 

@@ -24,8 +24,6 @@ from evodesign.records import AgentDetail, Case, CaseDetail
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 
-__all__ = ["Clearances", "distance_json", "overlaps", "solved_distances"]
-
 WHO: Mapping[str, str] = {ROBOT: "robot", HUMAN: "person"}
 
 Pairs = tuple[tuple[str, str], ...]

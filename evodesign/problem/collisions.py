@@ -22,8 +22,6 @@ DESIGNS = 16
 
 OTHERWISE = "ignored by the file, or exempt in another person"
 
-__all__ = ["may_overlap", "with_collisions"]
-
 
 def with_collisions(
     tables: ProblemFile, source: ProblemSource, scenes: tuple[Scene, ...], space: DesignSpace

@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.scene import Agent
 from evodesign.problem.agents import refuse_unrated
+from evodesign.problem.design_result import ObjectiveKind
 from evodesign.problem.file import BoundsTable, ProblemFile
 from evodesign.problem.hardware_objectives import refuse_without_hardware
 from evodesign.problem.motion_objectives import refuse_still
@@ -20,7 +21,6 @@ from evodesign.problem.objectives import (
     NEED_STRENGTHS,
     OTHERWISE_CALLED,
     QUANTITIES,
-    ObjectiveKind,
     objective_kind,
     objective_kinds,
 )
@@ -28,8 +28,6 @@ from evodesign.problem.person_objectives import refuse_without_back
 from evodesign.problem.torque_limits import PEAK_TORQUE, refuse_unlimited_peak
 from evodesign.records import Constraint, ProblemSource
 from evodesign.violations import BODIES_APART
-
-__all__ = ["constraint_key", "constraints_of", "refuse_constraints", "with_bodies_apart"]
 
 SUFFIXES: Mapping[str, str] = {
     "N m": "_n_m",

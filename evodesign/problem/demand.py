@@ -22,8 +22,6 @@ from evodesign.mechanics.scene import ROBOT, Agent
 from evodesign.mechanics.stance_case import StanceCase, StanceTorques, stance_slopes, stance_torques
 from evodesign.posture.results import CaseSolution
 
-__all__ = ["Demand", "SizedRobot", "demand_of"]
-
 Array = NDArray[np.float64]
 
 

@@ -6,12 +6,10 @@ from collections.abc import Iterable, Sequence
 
 import msgspec
 
-from evodesign.design.space import DesignParameter
+from evodesign.design.parameter import DesignParameter
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.file import DescriptorTable
 from evodesign.records import SUM, Constraint, Descriptor, Objective
-
-__all__ = ["LOWEST_REACH", "search_descriptors"]
 
 LOWEST_REACH = "lowest_reach"
 REACHES = (LOWEST_REACH, "highest_reach")

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from evodesign.body.material import Material
-from evodesign.design.space import DesignParameter, ParameterKind
+from evodesign.design.parameter import DesignParameter, ParameterKind
 from evodesign.design.walls import Wall
 from evodesign.errors import InputError, nearest_name
 from evodesign.hardware.actuators import Actuator, CatalogueRow, actuator_of_row, catalogue
@@ -21,8 +21,6 @@ from evodesign.problem.design_table import ActuatorTable, WallTable
 from evodesign.problem.file import ProblemFile
 from evodesign.records import ProblemSource
 from evodesign.tree.model import Tree
-
-__all__ = ["actuator_parameters", "wall_parameters", "walls_of"]
 
 
 def actuator_parameters(tables: ProblemFile, source: ProblemSource, tree: Tree) -> list[DesignParameter]:

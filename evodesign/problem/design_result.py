@@ -23,20 +23,6 @@ from evodesign.records import Case
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.model import Tree
 
-__all__ = [
-    "WORST",
-    "ByTorque",
-    "CaseQuantity",
-    "CaseValue",
-    "DesignResult",
-    "ObjectiveKind",
-    "PostureSlopes",
-    "aggregate",
-    "largest_value",
-    "values_over_cases",
-    "values_over_instants",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class DesignResult:

@@ -31,8 +31,6 @@ from evodesign.problem.sizing import sized_result, usual_values
 from evodesign.records import Case, Hold, Lift, Status
 from evodesign.tree.equip import mounted_solids
 
-__all__ = ["DesignSolver"]
-
 Cases = tuple[CaseSolution, ...]
 
 LESS = "less was tried, as another case has no posture"

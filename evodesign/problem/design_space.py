@@ -11,14 +11,8 @@ from dataclasses import replace
 from itertools import pairwise
 
 from evodesign.body.material import CATALOGUE, Material
-from evodesign.design.space import (
-    ALLOCATIONS,
-    EFFORT_RATIO,
-    ROBOT_SHARE,
-    DesignParameter,
-    DesignSpace,
-    ParameterKind,
-)
+from evodesign.design.parameter import ALLOCATIONS, EFFORT_RATIO, ROBOT_SHARE, DesignParameter, ParameterKind
+from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.load_share import share_interval
 from evodesign.mechanics.scene import Scene
@@ -26,17 +20,6 @@ from evodesign.posture.allocation import EffortWeights
 from evodesign.problem.design_table import AllocationTable, DensityTable
 from evodesign.problem.file import ProblemFile
 from evodesign.records import ProblemSource
-
-__all__ = [
-    "check_allocations",
-    "density_parameters",
-    "effort_weights",
-    "known_materials",
-    "refuse_choices",
-    "refuse_no_choice",
-    "robot_share",
-]
-
 
 BOUNDS = ("lower_kg_per_m3", "upper_kg_per_m3")
 

@@ -10,18 +10,6 @@ from msgspec import Meta
 
 from evodesign.problem.table import Name, Positive, Share, Table
 
-__all__ = [
-    "ActuatorTable",
-    "AllocationTable",
-    "DensityTable",
-    "DesignTable",
-    "Feet",
-    "HardwareTable",
-    "LoadCaseTable",
-    "MaterialTable",
-    "WallTable",
-]
-
 Margin = Annotated[float, Meta(ge=1.0)]
 
 

@@ -9,24 +9,14 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-from evodesign.design.space import ALLOCATIONS, DesignParameter, DesignSpace, ParameterKind
+from evodesign.design.parameter import ALLOCATIONS, DesignParameter, ParameterKind
+from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError, nearest_name
 from evodesign.problem.design_space import refuse_no_choice
 from evodesign.problem.source import decode_toml
 from evodesign.problem.table import Name, Positive, Table
 from evodesign.records import Genome, Parameter
 from evodesign.tree.model import Tree
-
-__all__ = [
-    "DesignEntry",
-    "PopulationFile",
-    "alike",
-    "beyond_bounds",
-    "designs_text",
-    "read_designs",
-    "start_genomes",
-    "unscaled_genome",
-]
 
 
 class DesignEntry(Table, frozen=True):

@@ -38,8 +38,6 @@ from evodesign.records import AgentDetail
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import JointKind, Tree
 
-__all__ = ["Ergonomics", "ergonomics", "ergonomics_json"]
-
 
 @dataclass(frozen=True, slots=True)
 class Ergonomics:

@@ -45,9 +45,6 @@ from evodesign.records import (
 )
 from evodesign.violations import BODIES_APART, missed_height, total_violation
 
-__all__ = ["AssessmentFactory", "Evaluator", "case_outcome", "detail_of", "reach_of"]
-
-
 UNDISTURBED = ""
 """Name of the load case in which nothing happens."""
 

@@ -64,8 +64,6 @@ from evodesign.problem.sensitivities import ObjectiveSensitivity
 from evodesign.records import Assessment, CaseDetail, Hold, materials_of, task_names
 from evodesign.violations import constraints_json
 
-__all__ = ["evaluation_json"]
-
 
 def evaluation_json(
     problem: DesignProblem,

@@ -48,17 +48,6 @@ from evodesign.records import (
 )
 from evodesign.searches.base import JOINT_STARTS
 
-__all__ = [
-    "Remembering",
-    "ValuesFactory",
-    "cached_precomputed",
-    "evaluation_factory",
-    "evaluator_of",
-    "problem_digest",
-    "values_factory",
-]
-
-
 Evaluations = AssessmentFactory | BaselineFactory
 
 

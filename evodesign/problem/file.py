@@ -14,7 +14,7 @@ from msgspec import Meta
 
 from evodesign.body.placement import Matrix, Vector
 from evodesign.hardware.actuators import CatalogueRow
-from evodesign.human.anthropometry import Sex, ShoulderWidth
+from evodesign.human.anthropometry_tables import Sex, ShoulderWidth
 from evodesign.human.measured_posture import HumanPosture
 from evodesign.human.population import PopulationSex
 from evodesign.mechanics.disturbance import OverCases, PushedAt
@@ -26,18 +26,6 @@ from evodesign.problem.design_table import DesignTable, HardwareTable, LoadCaseT
 from evodesign.problem.table import Name, NotNegative, Point, Positive, Share, Table
 from evodesign.tasks.lift import FEWEST_KNOTS, LoadProfile
 from evodesign.tree.urdf_read import InertiaRule
-
-__all__ = [
-    "CollisionsTable",
-    "DescriptorTable",
-    "DisturbanceTable",
-    "Facing",
-    "HumanTable",
-    "ProblemFile",
-    "RobotTable",
-    "SearchTable",
-    "TorqueLimits",
-]
 
 T = TypeVar("T")
 

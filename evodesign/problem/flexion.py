@@ -21,8 +21,6 @@ from evodesign.records import ProblemSource
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Joint, JointKind
 
-__all__ = ["bent_ranges"]
-
 Array = NDArray[np.float64]
 
 PARALLEL = 0.9

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
+from evodesign.design.parameter import DesignParameter, ParameterKind
+from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.contact import Ground
 from evodesign.mechanics.scene import Scene
@@ -35,8 +36,6 @@ from evodesign.records import (
     Task,
 )
 from evodesign.tree.model import Tree
-
-__all__ = ["ground_of", "objectives_of", "space_of", "tasks_of", "worker_limits"]
 
 GIGABYTE = 10**9
 

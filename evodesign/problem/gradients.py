@@ -29,7 +29,7 @@ from evodesign.posture.formulations.reach import HIGHEST, LOWEST
 from evodesign.posture.results import AgentPosture, Instant
 from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.design_result import WORST, DesignResult, PostureSlopes
+from evodesign.problem.design_result import WORST, CaseQuantity, DesignResult, PostureSlopes
 from evodesign.problem.motion_objectives import (
     ENDURANCE,
     ENERGY,
@@ -37,22 +37,13 @@ from evodesign.problem.motion_objectives import (
     POWER,
     mean_over_time,
 )
-from evodesign.problem.objectives import (
-    QUANTITIES,
-    REACH,
-    SHARED_REACH,
-    CaseQuantity,
-    objective_value,
-    split_name,
-)
+from evodesign.problem.objectives import QUANTITIES, REACH, SHARED_REACH, objective_value, split_name
 from evodesign.problem.person_objectives import HOLDING_TIME
 from evodesign.problem.sensitivities import ObjectiveSensitivity, Sensitivities, five_point
 from evodesign.problem.sized_slopes import CaseDerivative, along_design, program_slopes, reach_along_design
 from evodesign.problem.trees_beside import STEP
 from evodesign.records import Case, CaseGradient, Gradients, Lift
 from evodesign.violations import BODIES_APART, HEIGHT
-
-__all__ = ["assessed_gradients"]
 
 MOST_CASES = 8
 """Cases of which each is logged for itself; a mean over more is logged alone."""

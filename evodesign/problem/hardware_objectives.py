@@ -31,20 +31,6 @@ from evodesign.tree.equip import actuators_of
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 
-__all__ = [
-    "NEED_ACTUATORS",
-    "StanceModel",
-    "actuator_mass",
-    "cost",
-    "hand_deflection",
-    "holding_power",
-    "least_safety_factor",
-    "link_safety",
-    "power_by_torque",
-    "refuse_without_hardware",
-    "torque_share",
-]
-
 NEED_ACTUATORS = ("holding_power", "actuator_mass", "torque_margin", "hand_deflection")
 """How the names of quantities end that tell nothing where no design chooses actuators."""
 

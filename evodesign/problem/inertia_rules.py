@@ -13,8 +13,6 @@ from evodesign.problem.source import decode_toml
 from evodesign.tree.model import Link
 from evodesign.tree.urdf_read import InertiaRule, read_urdf
 
-__all__ = ["RuleDifference", "rule_differences"]
-
 MOVED, CHANGED = 1e-3, 0.05
 """Distance of the centres of mass [m] and relative difference of a principal moment that are worth a line."""
 

@@ -15,8 +15,6 @@ from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precom
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.motion_objectives import LEAST_TIME
 
-__all__ = ["InnerProblems", "inner_problems"]
-
 
 @dataclass(frozen=True, slots=True)
 class InnerProblems:

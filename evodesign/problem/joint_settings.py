@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from evodesign.design.space import DesignSpace, ParameterKind
+from evodesign.design.parameter import ParameterKind
+from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError, nearest_name
-from evodesign.nlp.solver import SolverOptions
+from evodesign.nlp.method import SolverOptions
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.codesign import JointSettings
 from evodesign.posture.limit_groups import Enforced
@@ -14,8 +15,6 @@ from evodesign.posture.postures import Symmetry
 from evodesign.posture.terms.paper_tasks import Tasks, TaskWeights
 from evodesign.problem.file import ProblemFile
 from evodesign.records import Genome, ProblemSource
-
-__all__ = ["joint_settings", "joint_start"]
 
 
 def joint_settings(

@@ -12,8 +12,6 @@ import msgspec
 from evodesign.identity import digest
 from evodesign.records import Evaluation, Genome
 
-__all__ = ["is_judged", "judged_notes"]
-
 ONE_IN = 2000
 """Of so many designs one is judged, which takes about a hundred times as long as an evaluation."""
 

@@ -16,8 +16,6 @@ from evodesign.human.measured_posture import USUAL_POSTURE, HumanPosture
 from evodesign.mechanics.scene import WRIST_MOMENT
 from evodesign.records import ProblemSource
 
-__all__ = ["left_out"]
-
 
 class _Load(msgspec.Struct, frozen=True):
     """What a load's hands pass, as in `PayloadTable`."""

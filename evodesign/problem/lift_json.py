@@ -9,8 +9,6 @@ from typing import Any
 
 from evodesign.motion.solution import LiftSolution
 
-__all__ = ["lift_csv", "lift_json"]
-
 
 def lift_json(solutions: Mapping[tuple[str, str], LiftSolution]) -> dict[str, Any]:
     """What a lift takes of robot and person, for every person and load."""

@@ -12,8 +12,6 @@ from evodesign.posture.results import CaseSolution
 from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Hold, Lift
 
-__all__ = ["Lifts"]
-
 
 class Lifts:
     """The lifts of a problem, with the programs of its evaluator.

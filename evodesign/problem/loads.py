@@ -22,8 +22,6 @@ from evodesign.mechanics.scene import (
 from evodesign.problem.file import DisturbanceTable, PayloadTable, ProblemFile
 from evodesign.records import ProblemSource
 
-__all__ = ["payloads", "refuse_stiff_arms", "scene_disturbances"]
-
 GRASP_CONE = math.radians(60.0)
 """Largest angle of a forearm from the direction of the grasp [rad]: about what a wrist bends."""
 

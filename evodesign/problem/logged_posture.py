@@ -7,8 +7,6 @@ import numpy as np
 from evodesign.posture.results import AgentPosture
 from evodesign.records import AgentDetail, LoadCaseDetail
 
-__all__ = ["logged_posture"]
-
 
 def logged_posture(own: AgentDetail, disturbed: LoadCaseDetail | None = None) -> AgentPosture:
     """An agent's posture with what it carries, undisturbed or under a disturbance."""

@@ -19,8 +19,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import unquote
 
-__all__ = ["MeshPlaces"]
-
 IN_PACKAGE = ("package", "model")
 """Schemes whose first part is a package's name."""
 

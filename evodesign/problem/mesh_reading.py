@@ -26,8 +26,6 @@ from evodesign.nlp.disk_cache import Cache, user_cache
 from evodesign.tree.placeholder import placeholder
 from evodesign.tree.surface import Surface, read_surface, surface_of, surface_text
 
-__all__ = ["KINDS", "few_triangles", "read_mesh"]
-
 KINDS = (".stl", ".dae", ".obj", ".ply")
 """Suffixes of the files that are read."""
 

@@ -22,8 +22,6 @@ from evodesign.tree.mesh_write import vertices_of
 from evodesign.tree.model import Link, Tree
 from evodesign.tree.surface import Surface, surface_of
 
-__all__ = ["says_y_up", "stood_upright"]
-
 HEAD = 100_000
 """Bytes in which a file says what is up."""
 

@@ -27,8 +27,6 @@ from evodesign.tree.surface import Surface, read_surface, surface_text
 from evodesign.tree.unit_doubts import mesh_doubts
 from evodesign.tree.urdf_read import InertiaRule, read_urdf
 
-__all__ = ["is_kept_name", "kept_name", "mesh_texts", "with_meshes_beside", "with_surfaces"]
-
 OF_ONE, OF_ALL, FEWEST = 2_000, 80_000, 12
 """Triangles kept of a mesh and, shared equally, of a robot's: 1 MB; and of each of very many."""
 

@@ -9,7 +9,7 @@ from typing import Any
 import msgspec
 
 from evodesign.body.shape import Box, Cylinder, Shape
-from evodesign.design.space import DesignParameter, ParameterKind
+from evodesign.design.parameter import DesignParameter, ParameterKind
 from evodesign.errors import ModelError
 from evodesign.mechanics.disturbance import Disturbance
 from evodesign.mechanics.scene import Agent, Payload
@@ -21,8 +21,6 @@ from evodesign.problem.source import decode_toml
 from evodesign.records import Hold, Lift
 from evodesign.tree.model import Link, Tree
 from evodesign.tree.resize import growth_of
-
-__all__ = ["model_json"]
 
 
 def model_json(problem: DesignProblem) -> dict[str, Any]:

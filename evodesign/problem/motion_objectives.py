@@ -27,22 +27,6 @@ from evodesign.problem.file import ProblemFile
 from evodesign.problem.hardware_objectives import holding_power, power_by_torque
 from evodesign.records import ProblemSource
 
-__all__ = [
-    "ENDURANCE",
-    "ENERGY",
-    "LEAST_TIME",
-    "NEED_LIFTS",
-    "POWER",
-    "SPINE",
-    "l5s1_moment",
-    "mean_over_time",
-    "moment_by_torque",
-    "motion_power_by_speed",
-    "motion_power_by_torque",
-    "refuse_still",
-    "robot_power",
-]
-
 Value = TypeVar("Value", float, NDArray[np.float64])
 
 POWER, ENERGY, SPINE, LEAST_TIME = "robot_power", "energy", "l5s1_moment", "lift_seconds"

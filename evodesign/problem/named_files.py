@@ -8,8 +8,6 @@ from evodesign.errors import InputError
 from evodesign.tree.mjcf_read import TranslatedRobot, is_mjcf, translated
 from evodesign.tree.placeholder import placeholder
 
-__all__ = ["read_robot", "read_text"]
-
 LONGEST_FILE = 10_000_000
 """Letters of a file that a problem names: a robot of 100 links has 100 kB."""
 

@@ -7,15 +7,14 @@ from collections.abc import Iterator
 
 from evodesign.body.placement import dot
 from evodesign.errors import listed
-from evodesign.human.anthropometry import Person, Sex
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
 from evodesign.human.measured_posture import unmeasured_heights
 from evodesign.mechanics.scene import Agent
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.left_out import left_out
 from evodesign.tree.model import Joint
-
-__all__ = ["assumed_heights", "notes"]
 
 ALIKE = math.radians(15.0)
 """Joint limits closer than this count as the same; they fit better if they are closer by this much."""

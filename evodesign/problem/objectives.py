@@ -77,22 +77,6 @@ from evodesign.problem.person_objectives import (
 from evodesign.records import Constraint, Lift, Objective
 from evodesign.violations import BODIES_APART
 
-__all__ = [
-    "HUMAN_EFFORT",
-    "NEED_STRENGTHS",
-    "OTHERWISE_CALLED",
-    "QUANTITIES",
-    "REACH",
-    "SHARED_REACH",
-    "CaseQuantity",
-    "ObjectiveKind",
-    "objective_kind",
-    "objective_kinds",
-    "objective_value",
-    "objective_values",
-    "split_name",
-]
-
 
 def _by_norm(agent: str) -> ByTorque:
     """D |tau| / d tau = tau / |tau|."""

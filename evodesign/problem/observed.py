@@ -27,8 +27,6 @@ from evodesign.mechanics.scene import SIDES, Agent
 from evodesign.records import AgentDetail
 from evodesign.tree.frames import link_frames
 
-__all__ = ["observed"]
-
 Array = NDArray[np.float64]
 Frames = Mapping[str, tuple[Array, Array]]
 

@@ -24,20 +24,6 @@ from evodesign.posture.results import AgentPosture
 from evodesign.problem.design_result import CaseQuantity, DesignResult, PostureSlopes, values_over_instants
 from evodesign.records import ProblemSource
 
-__all__ = [
-    "BACK",
-    "HOLDING_TIME",
-    "added_by_load",
-    "back_compression",
-    "compression_by_posture",
-    "compression_by_torque",
-    "endurance_by_torque",
-    "endurance_seconds",
-    "human_load_torque",
-    "load_torque_by_posture",
-    "refuse_without_back",
-]
-
 BACK = "back_compression"
 """The quantity that needs people with a joint at L5/S1."""
 

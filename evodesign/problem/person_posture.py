@@ -24,8 +24,6 @@ from evodesign.problem.file import HumanTable, JointRanges
 from evodesign.records import ProblemSource
 from evodesign.tree.frames import link_frames
 
-__all__ = ["HEAD", "is_measured", "with_posture"]
-
 ROOT, HEAD = "Pelvis", "Head"
 """A person's links: the root, and the one that holds the eyes."""
 

@@ -26,8 +26,6 @@ from evodesign.records import Assessment, Constraint, Genome, Sense
 from evodesign.searches.descent import Iterate, Slopes, descend
 from evodesign.violations import reason_of_infeasibility
 
-__all__ = ["Aim", "Polished", "Step", "aim_of", "polish"]
-
 AS_GOOD = 1e-6
 """Relative change for the worse of an objective that counts as none."""
 

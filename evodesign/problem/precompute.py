@@ -28,8 +28,6 @@ from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.time_left import PendingPiece
 from evodesign.records import Lift
 
-__all__ = ["precompute_setting", "precomputed", "staged_pieces"]
-
 WORK: Mapping[Subject, float] = {
     Subject.MEETINGS: 0.5,
     Subject.DESIGNS: 0.6,

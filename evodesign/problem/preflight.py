@@ -26,8 +26,6 @@ from evodesign.problem.source import decode_toml
 from evodesign.tree.model import Tree
 from evodesign.tree.welded import WeldedTree, without_frames
 
-__all__ = ["Finding", "preflight"]
-
 LIGHTEST, HEAVIEST = 1.0, 500.0
 """Masses [kg] between which a robot is one that people build."""
 

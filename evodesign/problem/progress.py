@@ -6,8 +6,6 @@ from collections.abc import Sequence
 
 from evodesign.problem.time_left import PendingPiece
 
-__all__ = ["SILENT", "PrecomputeProgress"]
-
 
 class PrecomputeProgress:
     """Is shown how far the pieces are; this one does nothing with it."""

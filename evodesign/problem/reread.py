@@ -15,9 +15,6 @@ from evodesign.problem.shipped import SHIPPED
 from evodesign.records import ProblemSource
 from evodesign.tree.mjcf_read import is_mjcf
 
-__all__ = ["reread"]
-
-
 COME_WITH_EVODESIGN = (SHIPPED, SHIPPED.parent / "populations")
 """Folders of the problems that come with evodesign, with their robots, and of the designs that they name."""
 

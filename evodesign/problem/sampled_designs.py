@@ -21,8 +21,6 @@ from evodesign.problem.progress import SILENT, PrecomputeProgress
 from evodesign.problem.samples import sampled_source
 from evodesign.records import Assessed, ProblemSource, SampledDesign
 
-__all__ = ["Sampled", "SampledFactory", "sampled_beside", "sampled_factory"]
-
 Sampled = tuple[int, tuple[float, ...]]
 """The number of a sample, and a design as one value per parameter."""
 

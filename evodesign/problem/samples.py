@@ -19,8 +19,6 @@ from evodesign.problem.person_posture import is_measured
 from evodesign.problem.source import decode_toml
 from evodesign.records import ProblemSource
 
-__all__ = ["asked_samples", "refuse_unsampled", "sampled_source", "samples_of"]
-
 
 def samples_of(tables: ProblemFile, source: ProblemSource) -> int:
     """How many samples of people a problem asks for; 0 for none.

@@ -22,7 +22,7 @@ from functools import partial
 
 import numpy as np
 
-from evodesign.design.space import DesignParameter
+from evodesign.design.parameter import DesignParameter
 from evodesign.motion.derivative import LiftDerivative
 from evodesign.motion.solution import MotionCase
 from evodesign.nlp.optimality import Array, NotDifferentiable
@@ -38,16 +38,6 @@ from evodesign.problem.objectives import objective_value
 from evodesign.problem.sized_slopes import CaseDerivative, along_design, program_slopes, reach_along_design
 from evodesign.problem.trees_beside import TreesBeside
 from evodesign.records import Status
-
-__all__ = [
-    "DesignDerivative",
-    "ObjectiveSensitivity",
-    "Sensitivities",
-    "five_point",
-    "posture_notes",
-    "reach_notes",
-]
-
 
 STEP = 1e-4
 """Step of the differences, as a share of a parameter's range."""

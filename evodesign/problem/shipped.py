@@ -13,8 +13,6 @@ from pathlib import Path
 from evodesign.errors import InputError, nearest_name
 from evodesign.files import is_there
 
-__all__ = ["SHIPPED", "ShippedProblem", "problem_path", "shipped_problems"]
-
 PACKAGE = Path(__file__).parents[1]
 INSTALLED = PACKAGE / "data" / "problems"
 SHIPPED = INSTALLED if INSTALLED.is_dir() else PACKAGE.parent / "problems"

@@ -9,8 +9,6 @@ from evodesign.problem.simulations import SimulatedCase
 from evodesign.simulation.feedback import Feedback
 from evodesign.simulation.outcome import AgentOutcome
 
-__all__ = ["simulations_json"]
-
 
 def simulations_json(simulations: Sequence[SimulatedCase], feedback: Feedback) -> dict[str, Any]:
     """What the table of a simulation shows, in SI units."""

@@ -20,16 +20,6 @@ from evodesign.simulation.rollout import rolled_out
 from evodesign.tasks import Hold, Lift, Task
 from evodesign.tree.model import Tree
 
-__all__ = [
-    "HOLD_SECONDS",
-    "SimulatedCase",
-    "lifts_among",
-    "picked_cases",
-    "picked_holds",
-    "simulated_holds",
-    "simulated_lifts",
-]
-
 HOLD_SECONDS = 2.0
 """For which a hold is simulated [s], unless another time is asked for."""
 

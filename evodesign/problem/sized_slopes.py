@@ -30,8 +30,6 @@ from evodesign.problem.hardware_objectives import StanceModel
 from evodesign.problem.sizing import BOUNDS
 from evodesign.problem.trees_beside import TreesBeside
 
-__all__ = ["CaseDerivative", "along_design", "program_slopes", "reach_along_design"]
-
 CaseDerivative = PostureDerivative | LiftDerivative
 """Of a load held still, or of a lift."""
 

@@ -23,8 +23,6 @@ from evodesign.problem.demand import Demand, SizedRobot, demand_of
 from evodesign.problem.design_result import DesignResult
 from evodesign.records import Status
 
-__all__ = ["BOUNDS", "SizingRounds", "sized_result", "usual_values"]
-
 BOUNDS = (1.0, 300.0)
 """Smallest and largest rated torque [N m] that an actuator is made for: somewhat beyond the catalogue."""
 

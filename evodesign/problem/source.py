@@ -27,8 +27,6 @@ from evodesign.problem.shipped import SHIPPED, problem_path
 from evodesign.problem.table import FILL_IN
 from evodesign.records import ProblemSource
 
-__all__ = ["copy_source", "decode_toml", "read_source", "source_of"]
-
 GIVEN = "the problem given"
 """What messages call a problem that no file holds."""
 

@@ -10,8 +10,6 @@ from evodesign.mechanics.scene import Agent, StanceLimits
 from evodesign.problem.file import ProblemFile
 from evodesign.records import ProblemSource
 
-__all__ = ["stance_of"]
-
 
 def stance_of(tables: ProblemFile, source: ProblemSource, person: Agent | None = None) -> StanceLimits:
     """Where feet and trunk may be.

@@ -20,8 +20,6 @@ from evodesign.problem.file import ProblemFile
 from evodesign.problem.torque_limits import driven_joints
 from evodesign.records import ProblemSource
 
-__all__ = ["standing_cases"]
-
 
 def standing_cases(tables: ProblemFile, source: ProblemSource, robot: Agent) -> tuple[StanceCase, ...]:
     """The postures in which the robot stands alone.

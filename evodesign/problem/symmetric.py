@@ -28,8 +28,6 @@ from evodesign.tree.frames import link_frames
 from evodesign.tree.mirror_images import PLACE, SHARE, seen_in_root
 from evodesign.tree.symmetry import mirror_of
 
-__all__ = ["Resolved", "resolved_symmetry"]
-
 
 @dataclass(frozen=True, slots=True)
 class Resolved:

@@ -7,8 +7,6 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-__all__ = ["FILL_IN", "Name", "NotNegative", "Point", "Positive", "Share", "Table"]
-
 FILL_IN = "FILL IN"
 """Stands in a file that `init` wrote for what could not be guessed; no value of any key."""
 

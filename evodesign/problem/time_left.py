@@ -14,8 +14,6 @@ from dataclasses import dataclass, replace
 from heapq import heapify, heapreplace
 from itertools import groupby
 
-__all__ = ["PendingPiece", "TimeLeft", "in_words"]
-
 LATER = 0.5
 """Work of a piece as a share of the first ones of its kind, one in each process, which wait for the compiler
 too; 0.2 to 0.7 with four public robots."""

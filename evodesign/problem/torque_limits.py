@@ -11,8 +11,6 @@ from evodesign.mechanics.scene import Agent
 from evodesign.problem.file import ProblemFile, TorqueLimits
 from evodesign.records import ProblemSource, Sense
 
-__all__ = ["PEAK_TORQUE", "driven_joints", "refuse_unlimited", "refuse_unlimited_peak", "torque_limits"]
-
 LIMITS_KEY = "robot.torque_limits_n_m"
 
 PEAK_TORQUE = "peak_torque"

@@ -10,8 +10,6 @@ import numpy as np
 from evodesign.design.space import Family
 from evodesign.tree.model import Tree
 
-__all__ = ["STEP", "TreesBeside"]
-
 STEP = 1e-4
 """Step of differences, as a share of a value."""
 

@@ -9,8 +9,6 @@ import msgspec
 
 from evodesign.tasks import Record, Task
 
-__all__ = ["Case", "Sense", "Status", "task_names", "worst_status"]
-
 
 class Status(StrEnum):
     """How a computation ended. The order is from best to worst."""

@@ -9,21 +9,6 @@ from evodesign.records.parameters import Genome
 from evodesign.records.postures import CaseDetail
 from evodesign.tasks import Record
 
-__all__ = [
-    "NO_SECONDS",
-    "Assessed",
-    "Assessment",
-    "CaseGradient",
-    "CaseOutcome",
-    "Detail",
-    "Evaluation",
-    "Front",
-    "Generation",
-    "Gradients",
-    "ReachOutcome",
-    "Turn",
-]
-
 
 class ReachOutcome(Record, frozen=True, omit_defaults=True):
     """Interval of load heights [m] that the robot can hold; bounds are None when not solved.

@@ -8,17 +8,6 @@ from collections.abc import Mapping
 from evodesign.records.cases import Sense
 from evodesign.tasks import Record
 
-__all__ = [
-    "Constraint",
-    "Genome",
-    "Objective",
-    "Parameter",
-    "choice_at",
-    "design_of",
-    "materials_of",
-    "middle_of",
-]
-
 Genome = tuple[float, ...]
 """A point of the unit cube, one coordinate per design parameter."""
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 from evodesign.records.evaluations import Assessment
 from evodesign.tasks import Record
 
-__all__ = ["SampledDesign", "SampledPeople"]
-
 
 class SampledDesign(Record, frozen=True):
     """A design beside the people of one sample.

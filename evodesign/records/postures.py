@@ -9,8 +9,6 @@ import msgspec
 from evodesign.records.cases import Case
 from evodesign.tasks import Hold, Record
 
-__all__ = ["AgentDetail", "CaseDetail", "InstantDetail", "LoadCaseDetail", "evenly"]
-
 
 class AgentDetail(Record, frozen=True, omit_defaults=True):
     """Posture, torques and wrenches of an agent.

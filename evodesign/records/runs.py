@@ -10,16 +10,6 @@ from msgspec import Meta
 from evodesign.records.parameters import Constraint, Genome, Objective, Parameter
 from evodesign.tasks import Record
 
-__all__ = [
-    "FORMAT_VERSION",
-    "SUM",
-    "Descriptor",
-    "ProblemSource",
-    "RunHeader",
-    "SearchSettings",
-    "SearchStage",
-]
-
 FORMAT_VERSION = 2
 """Version of the records; a reader refuses a log of a later one, and upgrades an earlier one."""
 

@@ -13,8 +13,6 @@ from evodesign.analysis.comparison import Attainment, Compared, Comparison
 from evodesign.analysis.seed_statistics import AttainmentSurface
 from evodesign.records import Objective, Sense
 
-__all__ = ["comparison_html"]
-
 COLOURS = ("#1f4e79", "#d1661c", "#2e8b57", "#8e4a9e", "#b22d3b", "#6b7280", "#b8860b", "#0f8b8d")
 """One per search; from the ninth on they come again, with other dashes."""
 

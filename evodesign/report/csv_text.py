@@ -13,8 +13,6 @@ import csv
 import io
 from collections.abc import Iterable, Sequence
 
-__all__ = ["csv_text"]
-
 FORMULA = tuple("=+-@\t\r\n'＝＋－＠")  # noqa: RUF001 - full-width signs begin a formula too
 
 

@@ -12,8 +12,6 @@ from evodesign.errors import InputError
 from evodesign.records import Evaluation, Objective, RunHeader, Sense
 from evodesign.report.subset import subsample
 
-__all__ = ["front_html"]
-
 MOST_POINTS = 10_000
 """Dominated evaluations beyond this number are thinned out evenly, and the figure says so."""
 

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from evodesign.problem.evaluate import Evaluator
     from evodesign.problem.progress import PrecomputeProgress
 
-__all__ = ["OpenedDesign", "RebuiltProblem", "open_design", "with_postures"]
-
 
 class RebuiltProblem:
     """The problem of a run, built from the header's text when it is first asked for, and once."""

@@ -37,16 +37,6 @@ from evodesign.runlog.run import RunLog
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_write import urdf_text
 
-__all__ = [
-    "Found",
-    "Published",
-    "ReproducedRobot",
-    "Reproduction",
-    "reproduction_json",
-    "write_reproduction",
-    "write_robot",
-]
-
 PAPER = "paper"
 
 

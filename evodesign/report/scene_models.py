@@ -23,8 +23,6 @@ from evodesign.records import AgentDetail, CaseDetail, Task
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Link, Mesh, Tree
 
-__all__ = ["LOAD", "ContactWrench", "PlacedScene", "SceneModels", "SceneSet", "looks_of", "placed_scene"]
-
 LOAD = "load"
 """Name of the load beside those of the agents."""
 

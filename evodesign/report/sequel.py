@@ -15,8 +15,6 @@ from evodesign.report.reproduction import write_robot
 from evodesign.runlog.run import RunLog
 from evodesign.tree.model import Tree
 
-__all__ = ["SequelReproduction", "sequel_json", "write_sequel"]
-
 
 @dataclass(frozen=True, slots=True)
 class SequelReproduction:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TypeVar
 
-__all__ = ["ranked_joints", "subsample"]
-
 T = TypeVar("T")
 
 

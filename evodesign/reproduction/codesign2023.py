@@ -38,8 +38,6 @@ from evodesign.reproduction.experiment import STRICTER, Experiment, stricter_pro
 from evodesign.runlog.run import RunLog
 from evodesign.tree.model import Tree
 
-__all__ = ["sequel_reproduction"]
-
 OURS = "search"
 COST, ROBOT_TORQUE = "paper2023_cost", "robot_torque"
 ROBOTS = SHIPPED.parent / "populations" / "sartore2023_robots.toml"

@@ -22,8 +22,6 @@ from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.session import Display
 
-__all__ = ["MEASURED", "STRICTER", "Effort", "Experiment", "stricter_problem"]
-
 GRIPS: Mapping[str, Mapping[str, Any]] = {"payload": {"grasp_direction": "side"}}
 STRICTER = {"and grips": GRIPS, "and collisions": {**GRIPS, "collisions": {}}}
 """Tables of a problem that are changed, each setting stricter than the one before."""

@@ -34,8 +34,6 @@ from evodesign.runlog.run import RunLog
 from evodesign.searches.base import JOINT_STARTS
 from evodesign.searches.registry import make_search
 
-__all__ = ["reproduction"]
-
 GRADIENT, EVOLUTION, ORIGINAL = "gradient", "evolution", "original"
 
 SHARE_OF_BASELINE = 0.4

@@ -22,21 +22,6 @@ import msgspec
 
 from evodesign.records import Detail, Evaluation, Front, Generation, RunHeader
 
-__all__ = [
-    "DETAIL",
-    "EVALUATION",
-    "FRONT",
-    "GENERATION",
-    "HEADER_COPY",
-    "MESSAGE_ENCODING",
-    "RECORDS",
-    "RUN",
-    "SCHEMA_ENCODING",
-    "Names",
-    "described",
-    "schema_of",
-]
-
 RUN: Final = "/run"
 EVALUATION: Final = "/evaluation"
 GENERATION: Final = "/generation"

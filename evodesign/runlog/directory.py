@@ -15,16 +15,6 @@ from pathlib import Path
 
 from evodesign.errors import RunError
 
-__all__ = [
-    "locked",
-    "make_directory",
-    "name_in_path",
-    "run_segments",
-    "segment_path",
-    "segments",
-    "synced",
-]
-
 LOCK = "lock"
 SEGMENT = re.compile(r"([0-9]{3}|[1-9][0-9]{3,8})\.mcap")
 

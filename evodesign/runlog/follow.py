@@ -21,8 +21,6 @@ from evodesign.runlog.scan import ATTACHMENT, CHUNK, DATA_END, HEADER, MESSAGE_I
 from evodesign.runlog.segment_file import opened
 from evodesign.runlog.validity import Validity
 
-__all__ = ["Follower", "Logged"]
-
 MAGIC_SIZE: Final = 8
 """Bytes before the first record of an MCAP file."""
 

@@ -11,8 +11,6 @@ from collections.abc import Iterable, Sequence
 
 from evodesign.records import Evaluation, Front, Generation, RunHeader
 
-__all__ = ["consecutive", "listed", "missing", "record_gaps", "segment_gaps"]
-
 MOST_LISTED = 20
 """Ranges of numbers in one sentence."""
 

@@ -28,16 +28,6 @@ from evodesign.records import (
     SearchSettings,
 )
 
-__all__ = [
-    "DECISIVE",
-    "differences",
-    "header_of",
-    "renewed",
-    "source_differences",
-    "version_differences",
-    "versions",
-]
-
 PACKAGES = ("evodesign", "casadi", "pin", "numpy", "scipy", "pymoo", "cma", "moocore", "joblib", "mcap")
 
 DECISIVE = ("evodesign", "casadi", "pin", "numpy", "scipy", "pymoo", "cma", "moocore")

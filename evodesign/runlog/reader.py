@@ -21,8 +21,6 @@ from evodesign.runlog.segment_file import LARGEST_RECORD, opened
 from evodesign.runlog.upgrade import record_of
 from evodesign.runlog.validity import header_fault
 
-__all__ = ["Believer", "Entry", "Segment", "entries", "read_segment"]
-
 R = TypeVar("R")
 
 USUAL_TOPICS: Final = dict(enumerate(RECORDS, 1))

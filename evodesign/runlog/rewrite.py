@@ -27,8 +27,6 @@ from evodesign.runlog.reader import Entry, entries
 from evodesign.runlog.run import RunLog, read_run, refuse_run
 from evodesign.runlog.writer import UNFINISHED, add_header_copy, encoded, register
 
-__all__ = ["begin_branch", "merge", "recover"]
-
 CHUNK_BYTES = 65536
 """Records are compressed together in chunks of this size: about 0.5 kB per evaluation instead of 1.0 kB."""
 

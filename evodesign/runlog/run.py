@@ -24,8 +24,6 @@ from evodesign.runlog.header import differences
 from evodesign.runlog.reader import Segment, read_segment
 from evodesign.runlog.validity import Validity
 
-__all__ = ["RunLog", "digest", "read_run", "refuse_run"]
-
 R = TypeVar("R", bound=msgspec.Struct)
 
 

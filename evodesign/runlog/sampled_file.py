@@ -19,8 +19,6 @@ from evodesign.identity import digest
 from evodesign.records import SampledDesign, SampledPeople
 from evodesign.runlog.run import RunLog
 
-__all__ = ["SAMPLED_FILE", "read_sampled", "write_sampled"]
-
 SAMPLED_FILE = "spread.json"
 
 LARGEST = 2**26

@@ -26,20 +26,6 @@ import zstandard
 from evodesign.runlog.channels import HEADER_COPY
 from evodesign.runlog.segment_file import LARGEST_CHUNK, LARGEST_RECORD, PREFIX, SegmentFile
 
-__all__ = [
-    "ATTACHMENT",
-    "CHUNK",
-    "DATA_END",
-    "HEADER",
-    "MESSAGE_INDEX",
-    "Chunk",
-    "Gap",
-    "Message",
-    "Scan",
-    "Unpacker",
-    "chunk_of",
-]
-
 MAGIC: Final = b"\x89MCAP0\r\n"
 HEADER, FOOTER, CHANNEL, MESSAGE, CHUNK, MESSAGE_INDEX, ATTACHMENT, DATA_END = 1, 2, 4, 5, 6, 7, 9, 15
 

@@ -19,8 +19,6 @@ from typing import Final
 
 from evodesign.errors import RunError
 
-__all__ = ["LARGEST_CHUNK", "LARGEST_RECORD", "SegmentFile", "opened"]
-
 LARGEST_RECORD: Final = 8 * 2**20
 """Longest JSON [byte] of one record that is written or believed; a header with its files is the largest."""
 

@@ -17,8 +17,6 @@ from evodesign.records import Detail, Evaluation, Front, Generation, Genome, Run
 from evodesign.runlog.run import RunLog
 from evodesign.runlog.writer import RunWriter
 
-__all__ = ["Observer", "SessionLog", "Silent"]
-
 LONGEST_WAIT = 0.1
 """Longest time [s] for which evaluations wait for others to reach the disk with them."""
 

@@ -23,8 +23,6 @@ import msgspec
 
 from evodesign.runlog.channels import RECORDS, RUN
 
-__all__ = ["record_of", "upgraded"]
-
 IPOPT: Final = "ipopt"
 """Who solved before runs told."""
 

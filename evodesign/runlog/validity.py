@@ -23,8 +23,6 @@ from evodesign.records import (
     RunHeader,
 )
 
-__all__ = ["Validity", "header_fault"]
-
 LARGEST_NUMBER: Final = 10**9
 """More evaluations than any run has: what is counted and listed stays bounded."""
 

@@ -40,8 +40,6 @@ from evodesign.runlog.directory import make_directory, segment_path, segments, s
 from evodesign.runlog.run import refuse_run
 from evodesign.runlog.segment_file import LARGEST_RECORD
 
-__all__ = ["LONGEST_SEGMENT", "RunWriter", "add_header_copy", "encoded", "register"]
-
 UNFINISHED = "segment.part"
 """A segment that has no header yet; a kill leaves at most one, which the next session writes over."""
 

@@ -18,18 +18,6 @@ from typing import Protocol
 
 from evodesign.records import Genome
 
-__all__ = [
-    "GRADIENT_SEARCHES",
-    "JOINT_STARTS",
-    "POPULATIONS",
-    "USUAL_POPULATION",
-    "AsynchronousSearch",
-    "Gradient",
-    "ObjectivePart",
-    "Outcome",
-    "Search",
-]
-
 Gradient = tuple[float | None, ...]
 """Derivatives by coordinate of the genome; None for a discrete one."""
 

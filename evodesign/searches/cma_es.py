@@ -28,8 +28,6 @@ from evodesign.searches.discrete import Array, snapped
 from evodesign.searches.quasi_random import Beginning, SobolStream, first_generation, generator_of
 from evodesign.searches.ranking import check_outcomes
 
-__all__ = ["AsynchronousCmaEs", "CmaEs"]
-
 
 class CmaEs:
     """CMA-ES by ask and tell, in the unit cube, for one objective or more.

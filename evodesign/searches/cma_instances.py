@@ -38,8 +38,6 @@ from evodesign.searches.hypervolume_improvement import HypervolumeImprovement
 from evodesign.searches.quasi_random import SobolStream
 from evodesign.searches.ranking import ranks, usable
 
-__all__ = ["Instances", "check_settings", "default_population", "improvement_cost", "instance_count"]
-
 MARGIN = 0.1
 """Share of the range by which the reference point is worse than the worst outcome, so that the ends count."""
 

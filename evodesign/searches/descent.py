@@ -23,8 +23,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-__all__ = ["Descent", "DescentProblem", "Iterate", "Slopes", "descend"]
-
 Array = NDArray[np.float64]
 
 FIRST_RADIUS, LARGEST_RADIUS, SMALLEST_RADIUS = 0.05, 0.4, 1e-4

@@ -16,8 +16,6 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["least_deviations", "snapped"]
-
 LARGEST_BOUND = 0.2
 """Of a part, that the standard deviation of a sample is not kept above."""
 

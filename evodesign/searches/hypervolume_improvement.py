@@ -24,8 +24,6 @@ import moocore
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["HypervolumeImprovement", "local_upper_bounds"]
-
 Array = NDArray[np.float64]
 
 

@@ -32,8 +32,6 @@ from evodesign.searches.discrete import snapped
 from evodesign.searches.quasi_random import Beginning, SobolStream, first_generation, generator_of
 from evodesign.searches.ranking import check_outcomes, infeasibility, usable
 
-__all__ = ["CELLS", "AsynchronousMapElites", "MapElites"]
-
 Array = NDArray[np.float64]
 
 CELLS = 20

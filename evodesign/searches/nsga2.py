@@ -41,8 +41,6 @@ from evodesign.searches.discrete import Array, snapped
 from evodesign.searches.quasi_random import Beginning, SobolStream, first_generation, generator_of
 from evodesign.searches.ranking import check_outcomes, with_outcomes
 
-__all__ = ["AsynchronousNsga2", "MixedCrossover", "MixedMutation", "Nsga2"]
-
 CROSSOVER_SHARE = 0.9
 CROSSOVER_INDEX = 15
 MUTATION_INDEX = 20

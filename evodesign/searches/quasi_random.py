@@ -19,16 +19,6 @@ from evodesign.searches.base import Outcome
 from evodesign.searches.discrete import snapped
 from evodesign.searches.ranking import check_outcomes
 
-__all__ = [
-    "AsynchronousRandom",
-    "Beginning",
-    "QuasiRandom",
-    "SobolPoints",
-    "SobolStream",
-    "first_generation",
-    "generator_of",
-]
-
 BLOCK = 64
 """Points computed at a time; a power of two, as the sequence's balance asks for."""
 

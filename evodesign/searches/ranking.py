@@ -20,8 +20,6 @@ import numpy as np
 from evodesign.records import Genome
 from evodesign.searches.base import Outcome
 
-__all__ = ["check_outcomes", "infeasibility", "ranks", "usable", "with_outcomes"]
-
 Objectives = tuple[float, ...]
 
 

@@ -17,8 +17,6 @@ from evodesign.records import SearchSettings, choice_at, middle_of
 from evodesign.searches.base import JOINT_STARTS, AsynchronousSearch, Search
 from evodesign.searches.restarted import Restarted
 
-__all__ = ["ASYNCHRONOUS_SEARCHES", "SEARCHES", "make_asynchronous_search", "make_search"]
-
 SEARCHES: Final[Mapping[str, str]] = {
     "cma-es": "evodesign.searches.cma_es:CmaEs",
     JOINT_STARTS: "evodesign.searches.quasi_random:QuasiRandom",

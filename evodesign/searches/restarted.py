@@ -21,8 +21,6 @@ from evodesign.records import Genome, SearchSettings
 from evodesign.searches.base import Outcome, Search
 from evodesign.searches.ranking import with_outcomes
 
-__all__ = ["Restarted", "fittest"]
-
 MakeSearch = Callable[[SearchSettings], Search]
 
 

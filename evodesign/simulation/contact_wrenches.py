@@ -15,8 +15,6 @@ from evodesign.mechanics.scene import SIDES
 from evodesign.posture.results import Array
 from evodesign.simulation.model import AgentParts, SimulatedScene
 
-__all__ = ["foot_wrenches", "hand_wrenches"]
-
 
 def foot_wrenches(found: SimulatedScene, parts: AgentParts) -> Array:
     """On the left and right foot, force [N] and moment [N m], in the sole frame, shape (2, 6)."""

@@ -25,8 +25,6 @@ from evodesign.mechanics.scene import SIDES
 from evodesign.posture.results import Array
 from evodesign.simulation.model import AgentParts, SimulatedScene
 
-__all__ = ["Feedback", "joint_inertias", "set_gains"]
-
 
 @dataclass(frozen=True, slots=True)
 class Feedback:

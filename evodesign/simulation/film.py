@@ -12,8 +12,6 @@ from evodesign.errors import InputError
 from evodesign.simulation.outcome import Rollout
 from evodesign.simulation.rollout import FRAME
 
-__all__ = ["film"]
-
 WIDTH, HEIGHT = 480, 360
 EVERY = 2
 """Frames of a rollout per picture."""

@@ -8,8 +8,6 @@ from importlib.util import find_spec
 
 from evodesign.errors import InputError
 
-__all__ = ["draw_without_a_screen", "refuse_without_mujoco"]
-
 
 def refuse_without_mujoco() -> None:
     """Refuse to simulate without MuJoCo.

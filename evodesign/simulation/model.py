@@ -34,8 +34,6 @@ from evodesign.tree.frames import link_frames
 from evodesign.tree.mjcf_write import mjcf_text
 from evodesign.tree.model import JointKind, Tree
 
-__all__ = ["LOAD", "STEP", "AgentParts", "SimulatedScene", "simulated_scene"]
-
 LOAD = "load"
 
 STEP = 2.5e-4

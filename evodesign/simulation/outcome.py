@@ -10,8 +10,6 @@ import numpy as np
 from evodesign.posture.results import Array
 from evodesign.simulation.plan import AgentPlan, Plan
 
-__all__ = ["FALLEN", "SETTLED", "AgentOutcome", "AgentRollout", "Rollout", "SimulationOutcome", "outcome_of"]
-
 FALLEN = 0.2
 """How far the root link of somebody who fell is from its place [m]."""
 

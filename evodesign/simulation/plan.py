@@ -16,8 +16,6 @@ from evodesign.mechanics.floating_base import ROOT
 from evodesign.motion.course import LiftCourse
 from evodesign.posture.results import AgentPosture
 
-__all__ = ["AgentPlan", "Plan", "hold_plan", "lift_plan"]
-
 Array = NDArray[np.float64]
 
 

@@ -27,8 +27,6 @@ from evodesign.simulation.outcome import FALLEN, AgentRollout, Rollout
 from evodesign.simulation.plan import Plan
 from evodesign.tree.model import Tree
 
-__all__ = ["FRAME", "rolled_out"]
-
 FRAME = 0.02
 """Time between two frames of a recording [s]."""
 

@@ -7,8 +7,6 @@ from typing import Any, ClassVar
 
 import msgspec
 
-__all__ = ["Record", "TaskRecord"]
-
 
 class Record(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Base of all records: immutable, strict, keyword-only."""

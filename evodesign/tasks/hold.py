@@ -7,8 +7,6 @@ from typing import Any, ClassVar
 
 from evodesign.tasks.base import TaskRecord
 
-__all__ = ["Hold"]
-
 
 class Hold(TaskRecord, frozen=True, tag="hold"):
     """The load held still, its centre at a height [m]: one instant."""

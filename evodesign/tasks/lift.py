@@ -18,8 +18,6 @@ import msgspec
 from evodesign.errors import InputError, nearest_name
 from evodesign.tasks.base import TaskRecord
 
-__all__ = ["FEWEST_KNOTS", "Lift", "LoadProfile", "minimum_jerk", "profile_named"]
-
 KNOTS = 12
 """As many a lift has unless it says otherwise."""
 

@@ -33,8 +33,6 @@ from evodesign.tree.mirror_pairs import Pairs
 from evodesign.tree.model import Joint, JointKind, Link, Look, Tree
 from evodesign.tree.solid_pairs import matrix, mean_rotation, mean_solids, turned_by, vector
 
-__all__ = ["Averaged", "averaged"]
-
 Array = NDArray[np.float64]
 
 SAME = 1e-12

@@ -19,8 +19,6 @@ from evodesign.errors import ModelError
 from evodesign.hardware.actuators import Actuator, mounted_solid
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 
-__all__ = ["WallOfLink", "actuators_of", "mounted_solids", "rated_torques", "with_actuators", "with_walls"]
-
 
 @dataclass(frozen=True, slots=True)
 class WallOfLink:

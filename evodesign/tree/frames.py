@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 from evodesign.body.placement import Matrix, Placement, Vector, scale
 from evodesign.tree.model import Joint, JointKind, Tree
 
-__all__ = ["link_frames", "link_poses", "parent_from_child"]
-
 Array = NDArray[np.float64]
 
 

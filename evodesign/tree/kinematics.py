@@ -16,8 +16,6 @@ import casadi as ca
 from evodesign.body.placement import Placement, Vector
 from evodesign.tree.model import Joint, JointKind, Tree
 
-__all__ = ["Pose", "axis_rotation", "euler_rotation", "forward", "vector"]
-
 Expression = Any
 """A casadi.SX or casadi.DM."""
 

@@ -21,18 +21,6 @@ from numpy.typing import NDArray
 
 from evodesign.tree.model import Link, Mesh, Tree
 
-__all__ = [
-    "NO_MESHES",
-    "MeshNames",
-    "has_hull",
-    "link_from_vertex",
-    "mesh_files",
-    "named_meshes",
-    "stl",
-    "triangles_of",
-    "vertices_of",
-]
-
 MeshNames = Mapping[tuple[str, int], str]
 """Files by link and by the mesh's position among the link's."""
 

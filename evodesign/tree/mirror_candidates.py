@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 from evodesign.tree.mirror_images import MIRROR, Difference, Figure, Seen, Tolerance, differences
 from evodesign.tree.model import Joint, JointKind, Tree
 
-__all__ = ["Candidates", "Unpaired", "beyond_of"]
-
 Array = NDArray[np.float64]
 
 NEAREST = 8

@@ -29,19 +29,6 @@ from evodesign.body.placement import Placement
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Joint, JointKind, Tree
 
-__all__ = [
-    "EXACT",
-    "MIRROR",
-    "Difference",
-    "Figure",
-    "Seen",
-    "Tolerance",
-    "differences",
-    "near",
-    "seen_in_root",
-    "sign_of",
-]
-
 Array = NDArray[np.float64]
 
 MIRROR: Array = np.array([1.0, -1.0, 1.0])

@@ -22,8 +22,6 @@ from evodesign.tree.mirror_images import Tolerance
 from evodesign.tree.mirror_pairs import Mirror, Pairs, mirror_pairs
 from evodesign.tree.model import Joint, JointKind, Link, Look, Tree
 
-__all__ = ["half", "paired"]
-
 
 def paired(tree: Tree, tolerance: Tolerance) -> tuple[Tree, Pairs, tuple[str, ...]]:
     """A tree of numbers with the same mechanics, its pairs, and the links whose mass was halved.

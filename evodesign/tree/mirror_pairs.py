@@ -13,8 +13,6 @@ from evodesign.tree.mirror_candidates import Candidates, Unpaired, beyond_of
 from evodesign.tree.mirror_images import Difference, Seen, Tolerance, differences, seen_in_root, sign_of
 from evodesign.tree.model import Tree
 
-__all__ = ["Mirror", "Pairs", "mirror_pairs"]
-
 IN_THE_MIDDLE = 1e-9
 """Of links nearer than this to the plane [m] it is not asked whether they lie to the left."""
 

@@ -14,8 +14,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-__all__ = ["acts_on", "effort_limit"]
-
 
 def acts_on(mujoco: Any, model: Any, joint: int) -> list[int]:
     """The actuators of a compiled model that act on a joint itself."""

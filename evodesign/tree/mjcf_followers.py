@@ -16,8 +16,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["FollowerRule", "follower_rules"]
-
 Rules = Mapping[int, tuple[int, NDArray[np.float64]]]
 """Leader, -1 for none, and coefficients by the joint that is moved."""
 

@@ -24,8 +24,6 @@ from evodesign.tree.mesh_write import stl
 from evodesign.tree.triangulation import capsule, ellipsoid
 from evodesign.tree.urdf_write import add_mesh, add_shape
 
-__all__ = ["add_geoms", "is_left_out", "placement", "vector"]
-
 SHOWN_GROUPS = 3
 """Groups below this are those that MuJoCo's viewer shows unless it is told otherwise."""
 

@@ -41,8 +41,6 @@ from evodesign.tree.model import Joint, JointKind
 from evodesign.tree.placeholder import placeholder
 from evodesign.tree.urdf_write import add_inertial, add_joint, numbers_text, robot_text
 
-__all__ = ["TranslatedRobot", "is_mjcf", "translated"]
-
 FIRST_ELEMENT = re.compile(r"\ufeff?(?:\s+|<\?.*?\?>|<!--.*?-->)*+<mujoco\b", re.DOTALL)
 UNDEFINED = re.compile(r"""(?<!name)=\s*["'][\s0-9.eE+-]*\bnan\b""", re.IGNORECASE)
 """A number that is none, other than a name of three letters."""

@@ -21,8 +21,6 @@ from evodesign.errors import listed
 from evodesign.tree.mjcf_effort import acts_on
 from evodesign.tree.mjcf_geoms import is_left_out
 
-__all__ = ["Unread"]
-
 GRAVITY, LIKE_IT = (0.0, 0.0, -9.81), 0.02
 """Weight per mass [m/s^2] that problems have (`mechanics.balance`), and a difference that is rounding."""
 

@@ -29,8 +29,6 @@ from evodesign.tree.mesh_write import NO_MESHES, MeshNames, has_hull, named_mesh
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.urdf_write import numbers_text
 
-__all__ = ["KeyPosture", "mjcf_text"]
-
 KINDS = {JointKind.REVOLUTE: "hinge", JointKind.CONTINUOUS: "hinge", JointKind.PRISMATIC: "slide"}
 TOUCHES_GROUND: dict[str, str] = {"contype": "0", "conaffinity": "1"}
 TOUCHES_NOTHING: dict[str, str] = {"contype": "0", "conaffinity": "0"}

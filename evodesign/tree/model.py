@@ -21,8 +21,6 @@ from evodesign.errors import ModelError, nearest_name
 from evodesign.hardware.actuators import Actuator
 from evodesign.tree.surface import Surface
 
-__all__ = ["Joint", "JointKind", "Link", "Look", "Mesh", "Tree"]
-
 
 class JointKind(StrEnum):
     """Joint types of URDF that evodesign moves or welds."""

@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["placeholder"]
-
 STAND_INS = {
     rb"\s*\Z": "is empty",
     rb"version https://git-lfs\.github\.com/spec/": "is a Git LFS pointer ('git lfs pull' brings the file)",

@@ -47,8 +47,6 @@ from evodesign.tree.stretch import (
     stretched_point,
 )
 
-__all__ = ["Growth", "growth_of", "resize"]
-
 AT_CENTRE = 1e-6
 """A point within this distance of a centre counts as at the centre [m]."""
 

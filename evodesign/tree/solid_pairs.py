@@ -16,8 +16,6 @@ from evodesign.body.placement import Matrix, Placement, Vector
 from evodesign.body.shape import Box, Cylinder, Shape, Solid, Sphere
 from evodesign.tree.mirror_images import ANGLE, PLACE
 
-__all__ = ["mean_rotation", "mean_solids", "turned_by"]
-
 Array = NDArray[np.float64]
 
 

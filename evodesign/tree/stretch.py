@@ -38,16 +38,6 @@ from evodesign.body.placement import (
 from evodesign.body.shape import Shape, Sphere
 from evodesign.tree.model import Joint, JointKind, Link, Look, Mesh, Tree
 
-__all__ = [
-    "UP",
-    "main_axis",
-    "scaled",
-    "stretched_inertia",
-    "stretched_look",
-    "stretched_mesh",
-    "stretched_point",
-]
-
 UP: Vector = (0.0, 0.0, 1.0)
 """The direction in which a root link grows, whose frame is z up (REP 103)."""
 

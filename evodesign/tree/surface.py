@@ -22,8 +22,6 @@ from numpy.typing import NDArray
 
 from evodesign.errors import InputError
 
-__all__ = ["MOST_TRIANGLES", "MOST_VERTICES", "Surface", "read_surface", "surface_of", "surface_text"]
-
 MOST_VERTICES, MOST_TRIANGLES = 65_536, 20_000
 """Of a surface that is read."""
 

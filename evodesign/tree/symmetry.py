@@ -16,8 +16,6 @@ from evodesign.tree.mirror_images import EXACT, Figure
 from evodesign.tree.mirror_pairs import Mirror, mirror_pairs
 from evodesign.tree.model import Tree
 
-__all__ = ["Mirror", "left_half", "mirror_of"]
-
 OF_A_LINK = frozenset({Figure.MASS, Figure.CENTER, Figure.INERTIA})
 
 

@@ -18,8 +18,6 @@ from evodesign.body.placement import Vector
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.tree.surface import Surface, surface_of
 
-__all__ = ["capsule", "capsule_surface", "ellipsoid", "scaled_surface"]
-
 SIDES, ARCS = 40, 8
 """Around the axis, and between a pole and the equator."""
 

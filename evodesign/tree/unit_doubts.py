@@ -21,8 +21,6 @@ from evodesign.errors import listed
 from evodesign.tree.mesh_write import vertices_of
 from evodesign.tree.model import Joint, JointKind, Link, Mesh
 
-__all__ = ["mesh_doubts", "unit_doubts"]
-
 FURTHEST, NO_LIMIT = 4.0 * math.pi * 1.01, 3600.0
 """A limit beyond two turns [rad], and one that stands for none."""
 NARROW, SEVERAL = 0.2, 4

@@ -22,8 +22,6 @@ from evodesign.errors import ModelError, on_one_line, shortened
 from evodesign.tree.model import JointKind
 from evodesign.tree.urdf_unread import refuse_xacro, tag_of, unread
 
-__all__ = ["checked_urdf"]
-
 
 @dataclass(frozen=True, slots=True)
 class Figures:

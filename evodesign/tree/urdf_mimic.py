@@ -13,8 +13,6 @@ from lxml import etree
 
 from evodesign.errors import ModelError
 
-__all__ = ["held_positions"]
-
 
 def held_positions(robot: etree._Element, source: str) -> dict[str, float]:
     """Positions [rad or m] of the mimic joints, by name.

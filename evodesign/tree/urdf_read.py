@@ -41,8 +41,6 @@ from evodesign.tree.urdf_check import checked_urdf
 from evodesign.tree.urdf_mimic import held_positions
 from evodesign.tree.urdf_write import UNLIMITED
 
-__all__ = ["InertiaRule", "read_urdf"]
-
 LEAST_MASS = 1e-9
 """A link below a microgram [kg] has no mass: some files give their frames a tiny one."""
 

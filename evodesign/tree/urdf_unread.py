@@ -16,8 +16,6 @@ from lxml import etree
 
 from evodesign.errors import ModelError, listed, shortened
 
-__all__ = ["refuse_xacro", "tag_of", "unread"]
-
 READ: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "robot": (("link", "joint"), ("name", "version")),
     "link": (("inertial", "visual", "collision"), ("name", "type")),

@@ -26,17 +26,6 @@ from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.tree.mesh_write import NO_MESHES, MeshNames, named_meshes
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 
-__all__ = [
-    "UNLIMITED",
-    "add_inertial",
-    "add_joint",
-    "add_mesh",
-    "add_shape",
-    "numbers_text",
-    "robot_text",
-    "urdf_text",
-]
-
 UNLIMITED = sys.float_info.max
 """An infinite limit as URDF text. Effort and velocity must be given, and urdfdom (pinocchio's parser) refuses
 `inf`; the largest double passes urdfdom, MuJoCo and yourdfpy, and is no joint's limit."""

@@ -11,8 +11,6 @@ from evodesign.body.placement import Placement, Vector
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Joint, JointKind, Tree
 
-__all__ = ["WeldedBody", "WeldedTree", "without_frames"]
-
 
 @dataclass(frozen=True, slots=True)
 class WeldedBody:

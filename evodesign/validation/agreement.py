@@ -16,8 +16,6 @@ from evodesign.human.measured_posture import HumanPosture
 from evodesign.validation.compare import POSTURES, ComparedCase
 from evodesign.validation.measured import HANGING, HOLDING
 
-__all__ = ["LABELS", "WAYS", "Agreement", "Agreements", "agreements"]
-
 WAYS: tuple[HumanPosture | None, ...] = (None, *POSTURES)
 """What is compared with measurements: statics in the measured postures, then predictions."""
 

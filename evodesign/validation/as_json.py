@@ -10,8 +10,6 @@ from evodesign.validation.compare import ComparedCase
 from evodesign.validation.holds import ComparedHold
 from evodesign.validation.posed import Posed
 
-__all__ = ["validation_json", "way_name"]
-
 DIGITS = 3
 
 

@@ -25,8 +25,6 @@ from evodesign.validation.c3d_reading import C3dContent, ForcePlate, read_conten
 from evodesign.validation.measured import Frame, Plate
 from evodesign.validation.recording import OF_LEGS, frame_of, refuse_far_places
 
-__all__ = ["is_c3d", "read_c3d"]
-
 Array = NDArray[np.float64]
 
 FRAMES_PER_SECOND = 5.0

@@ -29,8 +29,6 @@ from evodesign.problem.source import decode_toml
 from evodesign.validation.posed import LINK_OF
 from evodesign.validation.recording import NEEDED
 
-__all__ = ["SIDES", "Axis", "Joints", "LengthUnit", "PointsFile", "Tracks", "joint_tracks", "read_points"]
-
 Array = NDArray[np.float64]
 Tracks = Mapping[str, Mapping[str, Array]]
 """Places [m] of each joint in the file's axes, by side; shape (frames, 3), nan where a point is hidden."""

@@ -20,8 +20,6 @@ from numpy.typing import NDArray
 
 from evodesign.errors import InputError
 
-__all__ = ["C3dContent", "ForcePlate", "read_content"]
-
 Array = NDArray[np.float64]
 
 SECONDS, BYTES = 120.0, 8 << 30

@@ -15,7 +15,8 @@ from evodesign.human.anthropometry import Person
 from evodesign.human.measured_posture import HumanPosture, PostureRow
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import HUMAN, ROBOT, Payload, Scene
-from evodesign.nlp.solver import SolverCache, SolverOptions
+from evodesign.nlp.method import SolverOptions
+from evodesign.nlp.solver import SolverCache
 from evodesign.posture.formulations.human_value import HumanProblem
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import Form, half
@@ -23,8 +24,6 @@ from evodesign.posture.warm_start import instants_of, layout_of
 from evodesign.validation.measured import HANGING, HOLDING, Frame, MeasuredCase
 from evodesign.validation.posed import ANGLES, MOMENTS, Posed, PosedPerson, agent_of
 from evodesign.validation.prior import palm_height, rows_without
-
-__all__ = ["MEN_OF_PRIOR", "POSTURES", "ComparedCase", "Holder", "compare", "palms_of"]
 
 POSTURES = (HumanPosture.MEASURED, HumanPosture.LEAST_TORQUE)
 

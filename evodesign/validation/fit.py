@@ -22,8 +22,6 @@ from evodesign.validation.compare import ComparedCase, palms_of
 from evodesign.validation.measured import HOLDING, Frame
 from evodesign.validation.posed import OF_LEGS, PosedPerson
 
-__all__ = ["Fit", "fit", "fit_lines", "fitted_person"]
-
 LIMBS = (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))
 BESIDE_MEAN = ("trunk_low", "trunk_up", "knee", "shank", "arm", "elbow")
 

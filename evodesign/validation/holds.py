@@ -11,13 +11,12 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from evodesign.human.anthropometry import Person, Sex, ShoulderWidth
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex, ShoulderWidth
 from evodesign.human.measured_posture import HumanPosture
 from evodesign.validation.compare import POSTURES, Holder
 from evodesign.validation.measured import data_rows
 from evodesign.validation.posed import PosedPerson
-
-__all__ = ["HOLD_ANGLES", "LOAD", "SOMEONE", "ComparedHold", "compare_holds", "hold_differences"]
 
 SOMEONE = Person(1.75, 75.0, Sex.MALE, ShoulderWidth.JOINT_CENTRES)
 LOAD = 5.0

@@ -11,22 +11,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib import resources
 
-from evodesign.human.anthropometry import Person, Sex, ShoulderWidth
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex, ShoulderWidth
 from evodesign.mechanics.balance import GRAVITY
-
-__all__ = [
-    "BIN",
-    "EMPTY",
-    "HANGING",
-    "HOLDING",
-    "Frame",
-    "MeasuredCase",
-    "Plate",
-    "box_lifts",
-    "cases_of",
-    "data_rows",
-    "shipped_cases",
-]
 
 BIN = 0.15
 """Range of wrist heights that one case covers [m]."""

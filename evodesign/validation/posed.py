@@ -21,8 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from evodesign.human.anthropometry import Person
-from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
+from evodesign.human.anthropometry import Person, sole_size
+from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree
 from evodesign.human.coupled_joints import rhythms
 from evodesign.human.measured_posture import MARK, SIDES, HumanPosture, PostureRow, measured_posture
 from evodesign.mechanics.contact import SoleSize
@@ -32,8 +32,6 @@ from evodesign.posture.check import AgentModel
 from evodesign.posture.measured_starts import posture_of_features
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import Form, half
-
-__all__ = ["ANGLES", "CHAIN", "LINK_OF", "MOMENTS", "OF_LEGS", "Places", "Posed", "PosedPerson", "agent_of"]
 
 Array = NDArray[np.float64]
 Places = Mapping[str, tuple[float, float]]

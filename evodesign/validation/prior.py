@@ -14,8 +14,6 @@ import numpy as np
 from evodesign.human.measured_posture import ASSUMPTION, PostureRow, posture_rows
 from evodesign.validation.measured import MeasuredCase, box_lifts
 
-__all__ = ["HAND", "palm_height", "rows_without"]
-
 HAND = 0.0495
 """From wrist to palm, over stature: that of the generated man."""
 

@@ -13,8 +13,6 @@ from evodesign.mechanics.balance import GRAVITY
 from evodesign.validation.measured import Frame, Plate
 from evodesign.validation.posed import LINK_OF, Places
 
-__all__ = ["NEEDED", "OF_LEGS", "frame_of", "read_frames", "read_recording", "refuse_far_places"]
-
 NEEDED = ("hip", "shoulder", "elbow", "wrist")
 """Joints whose places a recording must have."""
 

@@ -9,8 +9,9 @@ import msgspec
 import pytest
 
 from evodesign.analysis.audit import audit, losses
-from evodesign.evolve import Silent, start
+from evodesign.evolve import start
 from evodesign.runlog.run import RunLog
+from evodesign.runlog.session_log import Silent
 from tests.runlog.toys import OrderedPool, ToySearch, ToyTask, shuffled, toy_header
 
 

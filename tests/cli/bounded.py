@@ -12,8 +12,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-__all__ = ["evodesign_bounded"]
-
 IMPORTS, BYTES = 4, 300_000_000
 
 

@@ -11,8 +11,6 @@ import pytest
 
 from evodesign.cli import main
 
-__all__ = ["evodesign"]
-
 
 def evodesign(*arguments: object) -> subprocess.CompletedProcess[str]:
     """What a command does, as if a process had done it."""

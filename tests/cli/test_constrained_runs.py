@@ -21,7 +21,7 @@ from evodesign.api.run import Run
 from evodesign.cli.front import front as front_command
 from evodesign.cli.show import show
 from evodesign.cli.tables.design import design_tables
-from evodesign.evolve import Silent, replay, resume, start
+from evodesign.evolve import replay, resume, start
 from evodesign.pool.base import Pool
 from evodesign.pool.registry import make_pool
 from evodesign.posture.precompute.precomputed import Precomputed
@@ -37,6 +37,7 @@ from evodesign.report.opened_design import open_design
 from evodesign.report.page import page_content
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run
+from evodesign.runlog.session_log import Silent
 from evodesign.runlog.writer import RunWriter
 from tests.runlog.toys import essence
 

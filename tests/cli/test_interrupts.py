@@ -13,11 +13,12 @@ from pathlib import Path
 
 import pytest
 
-from evodesign.evolve import Silent, start
+from evodesign.evolve import start
 from evodesign.interrupts import Interrupts
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.runlog.directory import segments
 from evodesign.runlog.run import read_run
+from evodesign.runlog.session_log import Silent
 from tests.faults.synthetic import synthetic_header
 from tests.runlog.toys import OrderedPool, ToyTask
 

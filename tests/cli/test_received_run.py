@@ -23,9 +23,10 @@ from typing import Any
 import msgspec
 import pytest
 
-from evodesign.evolve import Silent, start
+from evodesign.evolve import start
 from evodesign.runlog.channels import RUN
 from evodesign.runlog.reader import entries
+from evodesign.runlog.session_log import Silent
 from tests.cli import received
 from tests.faults.synthetic import synthetic_header
 from tests.runlog import crafted

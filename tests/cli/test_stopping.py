@@ -14,9 +14,10 @@ from pathlib import Path
 
 import pytest
 
-from evodesign.evolve import Silent, resume
+from evodesign.evolve import resume
 from evodesign.pool.dask_pool import CONNECT_SECONDS
 from evodesign.runlog.run import RunLog, read_run
+from evodesign.runlog.session_log import Silent
 from tests.cli.stopped_session import JOBS
 from tests.faults.kills import uninterrupted
 from tests.pool.cluster import Cluster

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from evodesign.evolve import Silent, start
+from evodesign.evolve import start
+from evodesign.runlog.session_log import Silent
 from tests.cli.here import evodesign
 from tests.faults.synthetic import synthetic_header
 from tests.runlog.toys import OrderedPool, ToyTask, shuffled

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evodesign.design.space import TYPICAL, DesignParameter, DesignSpace, ParameterKind
+from evodesign.design.parameter import DesignParameter, ParameterKind
+from evodesign.design.space import TYPICAL, DesignSpace
 from evodesign.errors import ModelError
 from evodesign.problem.build import DesignProblem
 

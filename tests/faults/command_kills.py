@@ -18,11 +18,12 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from evodesign.evolve import Silent, resume, start
+from evodesign.evolve import resume, start
 from evodesign.files import UNFINISHED
 from evodesign.pool.worker import SerialPool
 from evodesign.runlog.directory import segments
 from evodesign.runlog.run import RunLog, read_run
+from evodesign.runlog.session_log import Silent
 from tests.faults.kills import LONGEST, ROOT, Tally
 from tests.faults.synthetic import Synthetic, synthetic_header
 from tests.runlog.toys import essence

@@ -7,8 +7,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from evodesign.evolve import Silent, start
+from evodesign.evolve import start
 from evodesign.runlog.reader import Segment, read_segment
+from evodesign.runlog.session_log import Silent
 from tests.faults.synthetic import Synthetic, synthetic_header
 from tests.rewriting import write_anew
 from tests.runlog.toys import OrderedPool, shuffled

@@ -18,11 +18,12 @@ from pathlib import Path
 import msgspec
 
 from evodesign.analysis.audit import audit
-from evodesign.evolve import Silent, replay, start
+from evodesign.evolve import replay, start
 from evodesign.pool.worker import SerialPool
 from evodesign.records import Status
 from evodesign.runlog.directory import segments
 from evodesign.runlog.run import RunLog, read_run
+from evodesign.runlog.session_log import Silent
 from tests.faults.session import BEGINNING, checksum
 from tests.faults.synthetic import Size, Synthetic, synthetic_header
 from tests.runlog.toys import essence, toy_assessment

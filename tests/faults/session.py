@@ -15,10 +15,11 @@ from pathlib import Path
 
 import msgspec
 
-from evodesign.evolve import Silent, resume, start
+from evodesign.evolve import resume, start
 from evodesign.pool.registry import make_pool
 from evodesign.records import Evaluation
 from evodesign.runlog.directory import segments
+from evodesign.runlog.session_log import Silent
 from tests.faults.synthetic import Size, Synthetic
 
 BEGINNING = b"beginning"

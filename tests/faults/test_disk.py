@@ -19,10 +19,11 @@ import msgspec
 import pytest
 
 from evodesign.errors import RunError
-from evodesign.evolve import Silent, resume, start
+from evodesign.evolve import resume, start
 from evodesign.problem.left_out import left_out
 from evodesign.runlog.directory import locked
 from evodesign.runlog.run import read_run
+from evodesign.runlog.session_log import Silent
 from tests.cli.here import evodesign
 from tests.faults.kills import Session, uninterrupted
 from tests.faults.synthetic import Size, synthetic_header

@@ -17,8 +17,6 @@ from tests.faults.kills import kill_search, kill_workers
 from tests.faults.synthetic import Size
 from tests.pool.cluster import Cluster
 
-__all__ = ["KINDS", "Outcome", "Trial", "trial", "tried"]
-
 ALGORITHMS = ("nsga2", "cma-es", "random")
 POOLS = ("serial", "joblib", "dask")
 SEARCH_KILLS, WORKER_KILLS, COMMAND_KILLS = 8, 6, 6

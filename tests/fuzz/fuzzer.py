@@ -29,8 +29,6 @@ from tests.fuzz.limits import Hanging, limit_memory, time_limit
 from tests.fuzz.segment_cases import examine, messages_of, sound_run, spoilt
 from tests.rewriting import write_anew
 
-__all__ = ["TARGETS", "Tried", "main", "try_cases"]
-
 PATIENCE = 60.0
 """Seconds without an answer after which a case is ended from outside: one that waits uses no processor."""
 

@@ -15,20 +15,6 @@ from tests.fuzz.mutations import ANY
 from tests.fuzz.toml_mutations import TOML
 from tests.fuzz.xml_mutations import XML
 
-__all__ = [
-    "BODY",
-    "MESHES",
-    "PERSON",
-    "POPULATION",
-    "PROBLEM",
-    "ROBOT",
-    "TEXTS",
-    "Spoilt",
-    "complaint",
-    "sound",
-    "spoilt_files",
-]
-
 SEED = 20260101
 PROBLEM, ROBOT, PERSON, POPULATION = "problem.toml", "robot.urdf", "person.urdf", "designs.toml"
 

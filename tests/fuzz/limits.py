@@ -10,8 +10,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 
-__all__ = ["BYTES", "SECONDS", "Hanging", "limit_memory", "time_limit"]
-
 SECONDS = 5.0
 """Processor time after which a case counts as hanging [s]; most take a hundredth of one."""
 

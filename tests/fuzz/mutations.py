@@ -10,8 +10,6 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-__all__ = ["ANY", "DEPTHS", "NUMBERS", "WORDS", "Chance", "Mutation", "as_bytes", "some"]
-
 Chance = np.random.Generator
 Mutation = Callable[[str, Chance], bytes]
 

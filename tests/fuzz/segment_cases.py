@@ -26,8 +26,6 @@ from tests.faults.synthetic import synthetic_header
 from tests.runlog import crafted
 from tests.runlog.toys import OrderedPool, ToyTask, shuffled
 
-__all__ = ["Message", "examine", "messages_of", "sound_run", "spoilt"]
-
 Message = tuple[str, Any, int]
 """Topic, JSON and number."""
 

@@ -7,8 +7,6 @@ from collections.abc import Callable
 
 from tests.fuzz.mutations import DEPTHS, Chance, Mutation, as_bytes, some
 
-__all__ = ["TOML"]
-
 VALUES = (
     *(
         "1",

@@ -10,8 +10,6 @@ from lxml import etree
 
 from tests.fuzz.mutations import DEPTHS, NUMBERS, WORDS, Chance, Mutation, as_bytes, some
 
-__all__ = ["XML"]
-
 
 def edited(edit: Callable[[list[etree._Element], Chance], None]) -> Mutation:
     """A mutation of the parsed document, which is given as the list of its elements."""

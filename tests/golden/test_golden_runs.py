@@ -10,11 +10,12 @@ import pytest
 
 from evodesign.analysis.audit import audit
 from evodesign.analysis.front import front
-from evodesign.evolve import Silent, replay, resume
+from evodesign.evolve import replay, resume
 from evodesign.records import FORMAT_VERSION
 from evodesign.runlog.reader import read_segment
 from evodesign.runlog.rewrite import merge, recover
 from evodesign.runlog.run import RunLog, digest, read_run
+from evodesign.runlog.session_log import Silent
 from tests.cli.here import evodesign
 from tests.runlog.toys import OrderedPool, ToyTask, shuffled
 

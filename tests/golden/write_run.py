@@ -9,8 +9,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-from evodesign.evolve import Silent, resume, start
+from evodesign.evolve import resume, start
 from evodesign.records import FORMAT_VERSION
+from evodesign.runlog.session_log import Silent
 from tests.faults.synthetic import synthetic_header
 from tests.runlog.toys import OrderedPool, ToyTask, shuffled
 

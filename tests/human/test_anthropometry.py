@@ -8,16 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evodesign.errors import InputError
-from evodesign.human.anthropometry import (
-    PAIRED_SEGMENTS,
-    SEGMENTS,
-    Person,
-    Sex,
-    landmarks,
-    segments,
-    sole_size,
-)
-from evodesign.human.anthropometry_tables import tables
+from evodesign.human.anthropometry import PAIRED_SEGMENTS, SEGMENTS, Person, landmarks, segments, sole_size
+from evodesign.human.anthropometry_tables import Sex, tables
 
 persons = st.builds(Person, st.floats(1.45, 2.05), st.floats(40.0, 140.0), st.sampled_from(Sex))
 few = settings(max_examples=25, deadline=None)

@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 from evodesign.body.inertia import Inertia, total
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError
-from evodesign.human.anthropometry import ShoulderWidth, segments
-from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, Person, Sex, human_tree, sole_size
+from evodesign.human.anthropometry import Person, segments, sole_size
+from evodesign.human.anthropometry_tables import Sex, ShoulderWidth
+from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree
 from evodesign.tree.model import Joint, JointKind, Tree
 from tests.machine import leave_out
 

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from evodesign.human.anthropometry import ShoulderWidth, landmarks
-from evodesign.human.body import DEFAULT_JOINTS, Person, Sex, human_tree
+from evodesign.human.anthropometry import Person, landmarks
+from evodesign.human.anthropometry_tables import Sex, ShoulderWidth
+from evodesign.human.body import DEFAULT_JOINTS, human_tree
 from evodesign.human.coupled_joints import coupled_joints, rhythms, shared_ranges
 
 SCALE = 0.5

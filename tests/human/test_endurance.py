@@ -6,7 +6,8 @@ import math
 
 import pytest
 
-from evodesign.human.anthropometry import Person, Sex
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import DEFAULT_JOINTS
 from evodesign.human.endurance import endurance, endurance_tables, holding_time
 from evodesign.human.strength import joint_strengths, with_given

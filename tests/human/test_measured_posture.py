@@ -10,7 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from evodesign.human.body import DEFAULT_JOINTS, Person, Sex, human_tree
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex
+from evodesign.human.body import DEFAULT_JOINTS, human_tree
 from evodesign.human.measured_posture import (
     ASSUMPTION,
     FEATURES,

@@ -14,7 +14,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from evodesign.human.body import Person, Sex, human_tree
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex
+from evodesign.human.body import human_tree
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.floating_base import ROOT, BodyState, Configuration, FloatingBody
 

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from evodesign.human.anthropometry import Person, Sex, segments
-from evodesign.human.body import human_tree, sole_size
+from evodesign.human.anthropometry import Person, segments, sole_size
+from evodesign.human.anthropometry_tables import Sex
+from evodesign.human.body import human_tree
 from evodesign.human.stance import feet_apart, trunk_clearance
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source

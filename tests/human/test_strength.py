@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evodesign.body.placement import Placement
-from evodesign.human.anthropometry import Person, Sex
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import DEFAULT_JOINTS, human_tree
 from evodesign.human.strength import (
     joint_strengths,

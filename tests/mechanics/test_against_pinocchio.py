@@ -15,7 +15,8 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from evodesign.human.anthropometry import Person, Sex
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
 from evodesign.mechanics.balance import GRAVITY, AppliedWrench, center_of_mass, cut
 from evodesign.mechanics.scene import SIDES, Agent

@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement
-from evodesign.human.anthropometry import Person, Sex
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
 from evodesign.mechanics.balance import GRAVITY, cut
 from evodesign.mechanics.dynamics import ROOT_ROWS, bias, inverse_dynamics, mass_matrix

@@ -14,7 +14,8 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from evodesign.human.anthropometry import Person, Sex
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
 from evodesign.mechanics.balance import GRAVITY, AppliedWrench, cut
 from evodesign.mechanics.coupled import PAYLOAD, ContactKind, CoupledModel, CoupledSystem, level_load
@@ -28,8 +29,9 @@ from evodesign.mechanics.projected import (
     projected_torques,
 )
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Grasp, Scene
+from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import Program
-from evodesign.nlp.solver import RawSolution, Solver, SolverOptions
+from evodesign.nlp.solver import RawSolution, Solver
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import whole

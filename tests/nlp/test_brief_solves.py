@@ -9,8 +9,9 @@ from typing import Any
 import casadi as ca
 import pytest
 
+from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import Program, Variable
-from evodesign.nlp.solver import BRIEF, Solver, SolverOptions
+from evodesign.nlp.solver import BRIEF, Solver
 from evodesign.records import Status
 
 NEEDED = {"quick": 10, "slow": 90, "hopeless": 999}

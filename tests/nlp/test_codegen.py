@@ -17,8 +17,9 @@ from evodesign.nlp import codegen
 from evodesign.nlp.codegen import CompiledFunctions, Library, compiled_functions, library
 from evodesign.nlp.compiler import Compiler, NotCompiled, find_compiler
 from evodesign.nlp.disk_cache import Cache, open_cache
+from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
-from evodesign.nlp.solver import RawSolution, Solver, SolverOptions
+from evodesign.nlp.solver import RawSolution, Solver
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.problem.build import DesignProblem

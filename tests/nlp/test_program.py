@@ -6,8 +6,9 @@ import casadi as ca
 import numpy as np
 import pytest
 
+from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
-from evodesign.nlp.solver import Solver, SolverOptions
+from evodesign.nlp.solver import Solver
 from evodesign.records import Status
 
 

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 from evodesign.nlp.landscape import Landscape, spread_designs
+from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import ConstraintBlock, Program, Start, Variable
-from evodesign.nlp.solver import RawSolution, Solver, SolverOptions
+from evodesign.nlp.solver import RawSolution, Solver
 from evodesign.nlp.start_portfolio import Coverage
 from evodesign.nlp.start_training import Training, _cover, start_portfolio
 from evodesign.posture.precompute.precomputed import Precomputed

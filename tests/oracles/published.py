@@ -11,8 +11,6 @@ from evodesign.tree.model import Tree
 from evodesign.tree.urdf_read import InertiaRule, read_urdf
 from tests.tree.test_icub_robot import reference_text
 
-__all__ = ["published_robots"]
-
 NAME = "robot_reference.urdf"
 
 

@@ -9,11 +9,12 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from evodesign.evolve import Silent, start
+from evodesign.evolve import start
 from evodesign.pool.base import Limits, Pool
 from evodesign.pool.registry import make_pool
 from evodesign.pool.worker import SerialPool
 from evodesign.records import Evaluation, RunHeader, Status
+from evodesign.runlog.session_log import Silent
 from tests.pool.cluster import Cluster
 from tests.pool.faulty import HANGS, KILLS, NOT_A_NUMBER, Faulty, Slow, fault, results
 from tests.runlog.toys import essence, toy_header

@@ -10,8 +10,6 @@ import pinocchio as pin
 
 from evodesign.posture.terms.base import Body, BodyTerm, MeasuredBody, Residual, Row
 
-__all__ = ["mass_height"]
-
 
 def mass_height(lowest: float) -> BodyTerm:
     """The term for a lowest height [m]."""

@@ -10,7 +10,8 @@ import msgspec
 import numpy as np
 import pytest
 
-from evodesign.design.space import EFFORT_RATIO, ROBOT_SHARE, DesignParameter, DesignSpace, ParameterKind
+from evodesign.design.parameter import EFFORT_RATIO, ROBOT_SHARE, DesignParameter, ParameterKind
+from evodesign.design.space import DesignSpace
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Scene

@@ -9,9 +9,9 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from evodesign.design.space import ParameterKind
+from evodesign.design.parameter import ParameterKind
 from evodesign.mechanics.projected import center_of_pressure
-from evodesign.nlp.solver import SolverOptions
+from evodesign.nlp.method import SolverOptions
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting

@@ -26,19 +26,14 @@ from evodesign.posture.formulations.decoupled import robot_program
 from evodesign.posture.formulations.human_value import human_program
 from evodesign.posture.formulations.reach import HEIGHT, LEAST, LOWEST, ReachProblem, reach_program
 from evodesign.posture.parting import Parted
-from evodesign.posture.placed_shape import ROUNDING, SHAPE, PlacedShape
+from evodesign.posture.placed_shape import ROUNDING, SHAPE, PlacedShape, placed_shape
 from evodesign.posture.postures import Symmetry
 from evodesign.posture.precompute.meetings import _Finder, found_meetings, with_meetings
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
 from evodesign.posture.separating_axes import ways_of
 from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import symmetric_forms, whole
-from evodesign.posture.terms.collisions import (
-    NUMBERS,
-    directed,
-    placed_pairs,
-    placed_shape,
-)
+from evodesign.posture.terms.collisions import NUMBERS, directed, placed_pairs
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.sensitivities import Sensitivities

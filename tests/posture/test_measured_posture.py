@@ -10,7 +10,8 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from evodesign.human.anthropometry import Person, Sex
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
 from evodesign.human.measured_posture import FEATURES, MARK, PostureRow, drawn_person, posture_rows
 from evodesign.mechanics.floating_base import BodyState

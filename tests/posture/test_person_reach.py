@@ -7,7 +7,8 @@ from dataclasses import replace
 import pytest
 
 from evodesign.errors import InputError
-from evodesign.human.anthropometry import Person, Sex
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
 from evodesign.posture.formulations.human_value import HumanProblem
 from evodesign.posture.formulations.reach import person_reach

@@ -8,10 +8,11 @@ import casadi as ca
 import numpy as np
 import pytest
 
+from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
 from evodesign.nlp.sensitivity import Optimum, SolutionSensitivity
-from evodesign.nlp.solver import Solver, SolverOptions
+from evodesign.nlp.solver import Solver
 
 
 def nearest_point() -> Program:

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
+from evodesign.design.parameter import DesignParameter, ParameterKind
+from evodesign.design.space import DesignSpace
 from evodesign.errors import ModelError
 from evodesign.mechanics.scene import HUMAN, ROBOT, Payload
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio

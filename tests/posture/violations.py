@@ -7,8 +7,6 @@ from collections.abc import Mapping
 from evodesign.posture.check import Checker, sizes
 from evodesign.posture.results import AgentPosture, Instant
 
-__all__ = ["violations"]
-
 Postures = Mapping[str, AgentPosture]
 
 

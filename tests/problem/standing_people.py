@@ -8,8 +8,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from evodesign.body.placement import Placement
-from evodesign.human.anthropometry import Person, Sex
-from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
+from evodesign.human.anthropometry import Person, sole_size
+from evodesign.human.anthropometry_tables import Sex
+from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree
 from evodesign.human.strength import joint_strengths
 from evodesign.mechanics.contact import SoleSize
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Payload, Scene

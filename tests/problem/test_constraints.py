@@ -9,7 +9,8 @@ import msgspec
 import pytest
 
 from evodesign.errors import InputError
-from evodesign.human.anthropometry import Person, Sex
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
 from evodesign.problem.baseline import refuse_unsuited
 from evodesign.problem.build import DesignProblem, build_problem

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
+from evodesign.design.parameter import DesignParameter, ParameterKind
+from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError
 from evodesign.hardware.actuators import actuator_law
 from evodesign.mechanics.scene import ROBOT
@@ -23,7 +24,7 @@ from evodesign.problem.objectives import objective_kinds
 from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Constraint, Hold, Objective, ProblemSource, Sense, design_of
 from evodesign.tree.equip import actuators_of
-from tests.fuzz.test_fuzz_inputs import PROBLEM, TEXTS
+from tests.fuzz.input_cases import PROBLEM, TEXTS
 
 SHOULDER = '\n[[design.actuator]]\nname = "shoulder"\njoints = ["l_shoulder", "r_shoulder"]\n'
 SPIN = '\n[[design.actuator]]\nname = "spin"\njoints = ["spin"]\n'

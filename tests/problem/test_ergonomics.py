@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from evodesign.human.anthropometry import Person, Sex
-from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
+from evodesign.human.anthropometry import Person, sole_size
+from evodesign.human.anthropometry_tables import Sex
+from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree
 from evodesign.human.endurance import endurance
 from evodesign.human.niosh import Coupling
 from evodesign.human.strength import joint_strengths

@@ -8,9 +8,10 @@ import msgspec
 import numpy as np
 import pytest
 
-from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
+from evodesign.design.parameter import DesignParameter, ParameterKind
+from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError
-from evodesign.evolve import Silent, replay, resume, start
+from evodesign.evolve import replay, resume, start
 from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.pool.worker import SerialPool
 from evodesign.posture.precompute.precomputed import Precomputed
@@ -20,6 +21,7 @@ from evodesign.problem.objectives import objective_kinds
 from evodesign.records import Assessment, Constraint, Genome, Gradients, Objective, Sense
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import digest, read_run
+from evodesign.runlog.session_log import Silent
 from evodesign.session import search_outcome
 from evodesign.violations import bound_margin, height_margin, total_violation
 

@@ -17,7 +17,7 @@ from evodesign.problem.source import read_source
 from evodesign.records import ProblemSource, design_of, materials_of
 from evodesign.searches.base import JOINT_STARTS
 from evodesign.searches.registry import make_search
-from tests.fuzz.test_fuzz_inputs import POPULATION, PROBLEM, TEXTS
+from tests.fuzz.input_cases import POPULATION, PROBLEM, TEXTS
 
 BOUNDS = "lower_kg_per_m3 = 500.0\nupper_kg_per_m3 = 4000.0\n"
 OWN = """

@@ -13,9 +13,10 @@ import pytest
 from evodesign.errors import InputError
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
 from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.design_result import ObjectiveKind
 from evodesign.problem.evaluate import AssessmentFactory
 from evodesign.problem.factory import Remembering
-from evodesign.problem.objectives import ObjectiveKind, objective_kind, objective_kinds
+from evodesign.problem.objectives import objective_kind, objective_kinds
 from evodesign.records import SearchSettings
 
 MODULE = """

@@ -10,7 +10,8 @@ import msgspec
 import pytest
 
 from evodesign.errors import InputError
-from evodesign.human.anthropometry import Person, Sex
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
 from evodesign.human.strength import joint_strengths
 from evodesign.mechanics.scene import HUMAN, ROBOT

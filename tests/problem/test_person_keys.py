@@ -9,7 +9,8 @@ import casadi as ca
 import pytest
 
 from evodesign.errors import InputError
-from evodesign.human.anthropometry import Person, Sex, ShoulderWidth
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex, ShoulderWidth
 from evodesign.human.body import DEFAULT_JOINTS, human_tree
 from evodesign.human.coupled_joints import coupled_joints, rhythms
 from evodesign.mechanics.scene import Grasp, GraspDirection

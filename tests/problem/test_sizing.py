@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evodesign.design.space import DesignParameter, DesignSpace, ParameterKind
+from evodesign.design.parameter import DesignParameter, ParameterKind
+from evodesign.design.space import DesignSpace
 from evodesign.hardware.actuators import actuator_law
 from evodesign.mechanics.scene import ROBOT
 from evodesign.mechanics.stance_case import StanceCase

@@ -8,7 +8,7 @@ from evodesign.errors import InputError
 from evodesign.mechanics.scene import Agent
 from evodesign.problem.build import build_problem
 from evodesign.records import ProblemSource
-from tests.fuzz.test_fuzz_inputs import PROBLEM, ROBOT, TEXTS
+from tests.fuzz.input_cases import PROBLEM, ROBOT, TEXTS
 
 
 def robot_of(

@@ -18,14 +18,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from evodesign.human.anthropometry import Person, Sex, ShoulderWidth
-from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree, sole_size
+from evodesign.human.anthropometry import Person, sole_size
+from evodesign.human.anthropometry_tables import Sex, ShoulderWidth
+from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree
 from evodesign.human.coupled_joints import rhythms
 from evodesign.human.measured_posture import MARK, measured_posture
 from evodesign.mechanics.contact import SoleSize
 from evodesign.mechanics.floating_base import ROOT, BodyState, Configuration, FloatingBody
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Payload, Scene
-from evodesign.nlp.solver import SolverOptions
+from evodesign.nlp.method import SolverOptions
 from evodesign.posture.check import AgentModel
 from evodesign.posture.formulations.human_value import HumanProblem
 from evodesign.posture.symmetry import half

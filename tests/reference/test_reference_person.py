@@ -24,7 +24,9 @@ import pytest
 
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Sphere
-from evodesign.human.body import DEFAULT_JOINTS, Person, Sex, human_tree
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex
+from evodesign.human.body import DEFAULT_JOINTS, human_tree
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import HUMAN, SIDES
 from evodesign.problem.build import DesignProblem, build_problem

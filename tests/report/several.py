@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from evodesign.human.anthropometry import Person, Sex
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.records import (
     Assessment,

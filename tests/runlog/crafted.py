@@ -12,8 +12,6 @@ import zstandard
 
 from evodesign.runlog.channels import HEADER_COPY, RECORDS
 
-__all__ = ["attachment", "channels", "chunk", "compressed_chunk", "message", "record", "segment", "told"]
-
 MAGIC = b"\x89MCAP0\r\n"
 HEADER, FOOTER, CHANNEL, MESSAGE, CHUNK, ATTACHMENT, DATA_END = 1, 2, 4, 5, 6, 9, 15
 NUMBERS = {topic: number for number, topic in enumerate(RECORDS, 1)}

@@ -9,7 +9,8 @@ import sys
 import time
 from pathlib import Path
 
-from evodesign.evolve import Silent, start
+from evodesign.evolve import start
+from evodesign.runlog.session_log import Silent
 from tests.runlog.toys import OrderedPool, ToySearch, ToyTask, toy_header
 
 LAST, FOR_EVER = 17, 3600.0

@@ -11,11 +11,12 @@ import pytest
 from mcap.reader import make_reader
 
 from evodesign.errors import InputError, RunError
-from evodesign.evolve import Silent, replay, resume, start
+from evodesign.evolve import replay, resume, start
 from evodesign.records import RunHeader
 from evodesign.runlog.directory import locked
 from evodesign.runlog.rewrite import begin_branch, merge, recover
 from evodesign.runlog.run import RunLog, digest, read_run
+from evodesign.runlog.session_log import Silent
 from evodesign.searches.registry import make_search
 from tests.faults.synthetic import synthetic_header
 from tests.runlog.toys import OrderedPool, ToyTask, essence, shuffled

@@ -13,8 +13,9 @@ from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement
 from evodesign.errors import ModelError
 from evodesign.problem.build import DesignProblem
+from evodesign.tree.mirror_pairs import Mirror
 from evodesign.tree.model import Joint, JointKind, Link, Tree
-from evodesign.tree.symmetry import Mirror, left_half, mirror_of
+from evodesign.tree.symmetry import left_half, mirror_of
 
 
 def bird(right_axis: tuple[float, float, float] = (-1.0, 0.0, 0.0), right_mass: float = 1.0) -> Tree:

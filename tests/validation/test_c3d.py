@@ -12,7 +12,8 @@ import pytest
 from numpy.typing import NDArray
 
 from evodesign.errors import InputError
-from evodesign.human.anthropometry import Person, Sex, ShoulderWidth
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex, ShoulderWidth
 from evodesign.human.measured_posture import measured_posture
 from evodesign.validation.c3d import read_c3d
 from evodesign.validation.c3d_points import BELL, Axis, Joints, LengthUnit, PointsFile, read_points

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from evodesign.body.placement import Placement
-from evodesign.human.anthropometry import Person, Sex, ShoulderWidth
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex, ShoulderWidth
 from evodesign.posture.results import AgentPosture
 from evodesign.tree.frames import link_frames
 from evodesign.validation.posed import ANGLES, MOMENTS, PosedPerson

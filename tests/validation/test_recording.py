@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from evodesign.errors import InputError
-from evodesign.human.anthropometry import Person, Sex, ShoulderWidth
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex, ShoulderWidth
 from evodesign.human.measured_posture import measured_posture
 from evodesign.validation.measured import BIN, cases_of
 from evodesign.validation.posed import PosedPerson

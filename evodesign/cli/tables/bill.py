@@ -11,8 +11,6 @@ from evodesign.cli.output import rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.errors import on_one_line
 
-__all__ = ["actuators_table", "mass_title"]
-
 
 def mass_title(bill: Mapping[str, Any]) -> str:
     """The masses of a bill in words."""

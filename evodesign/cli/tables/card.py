@@ -31,8 +31,6 @@ from evodesign.violations import reason_of_infeasibility
 if TYPE_CHECKING:
     from evodesign.problem.ergonomics import Ergonomics
 
-__all__ = ["card"]
-
 BAR = 16
 """Columns of a parameter's bar."""
 

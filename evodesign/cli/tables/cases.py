@@ -12,8 +12,6 @@ from evodesign.errors import on_one_line
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.records import Assessment, CaseOutcome, Lift
 
-__all__ = ["cases_table", "summary_table"]
-
 ALONE = ("height [m]", "robot |tau| [N m]", "human |tau| [N m]", "iterations", "residual")
 MOVING = ("load",)
 SEVERAL = ("height", "robot |tau|", "human |tau|", "residual")

@@ -10,8 +10,6 @@ from evodesign.analysis.comparison_json import hypervolume_summary
 from evodesign.cli.output import heading, markup, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 
-__all__ = ["comparison_tables", "lines_after", "lines_before"]
-
 
 def comparison_tables(comparison: Comparison) -> tuple[FittedTable, ...]:
     """Searches, runs, tests and best designs; those that would be empty are left out."""

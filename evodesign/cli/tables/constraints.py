@@ -9,8 +9,6 @@ from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import Assessment, Constraint
 from evodesign.violations import bounds_text, violations
 
-__all__ = ["constraints_table", "violation_heading"]
-
 
 def constraints_table(
     constraints: Sequence[Constraint], title: str, *columns: tuple[str, Assessment]

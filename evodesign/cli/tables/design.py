@@ -23,8 +23,6 @@ from evodesign.problem.evaluate import detail_of
 from evodesign.problem.sensitivities import ObjectiveSensitivity
 from evodesign.records import Assessment, CaseDetail
 
-__all__ = ["design_tables"]
-
 STRONGEST = 4
 """Parameters shown per objective."""
 

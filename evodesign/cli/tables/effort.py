@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from evodesign.human.endurance import Endurance
     from evodesign.problem.ergonomics import Ergonomics
 
-__all__ = ["TITLE", "TITLE_OF_SEVERAL", "effort_table"]
-
 TITLE = "the person's back, holding time and posture scores"
 TITLE_OF_SEVERAL = "back, holding time and posture scores of each person's hardest postures"
 

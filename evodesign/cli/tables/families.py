@@ -8,8 +8,6 @@ from evodesign.cli.output import heading, rounded
 from evodesign.cli.tables.table import FittedTable, numbers, titled
 from evodesign.records import RunHeader
 
-__all__ = ["families_line", "families_table"]
-
 ROWS = 30
 """Kinds in the table; `--json` has all."""
 

@@ -17,8 +17,6 @@ from evodesign.report.csv_text import csv_text
 from evodesign.runlog.run import RunLog
 from evodesign.violations import HEIGHT, constraint_sentences, constraints_json, violations
 
-__all__ = ["front_csv", "front_json", "front_lines", "front_table", "least_violated"]
-
 TITLES = {
     Order.FIRST_OBJECTIVE: "Front of",
     Order.KNEE: "Knees of the front of",

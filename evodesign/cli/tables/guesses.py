@@ -8,8 +8,6 @@ from evodesign.cli.output import markup
 from evodesign.cli.tables.table import FittedTable, names, titled
 from evodesign.problem.guess.problem_text import Guess
 
-__all__ = ["guesses_table"]
-
 
 def guesses_table(guesses: Iterable[Guess], unknown: str) -> FittedTable:
     """Key, guess and reason in a row each; `unknown` stands where nothing was found."""

@@ -8,8 +8,6 @@ from evodesign.cli.output import markup, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.motion.solution import LiftSolution
 
-__all__ = ["lift_tables"]
-
 
 def lift_tables(title: str, solutions: Mapping[tuple[str, str], LiftSolution]) -> Iterator[FittedTable]:
     """What a lift takes of robot and person, then torques over time.

@@ -8,8 +8,6 @@ from evodesign.cli.output import markup
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import ActiveLimit, CaseDetail
 
-__all__ = ["TITLE", "limits_table"]
-
 TITLE = "limits that are active, and by how many N m each step more changes the effort"
 
 MOST_COLUMNS = 6

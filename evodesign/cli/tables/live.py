@@ -17,8 +17,6 @@ from evodesign.cli.output import heading, markup, printable, rounded
 from evodesign.cli.tables.table import FittedTable, designs_table
 from evodesign.report.live.state import MOST_KNEES, LiveState, word
 
-__all__ = ["screen", "sparkline"]
-
 BARS = "▁▂▃▄▅▆▇█"
 SPARKS = 30
 """Most signs of a sparkline."""

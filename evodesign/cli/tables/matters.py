@@ -10,8 +10,6 @@ from evodesign.cli.output import markup, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import Evaluation, Objective, RunHeader
 
-__all__ = ["importance_tables", "slice_tables"]
-
 MOST_PAIRS = 3
 
 ROUNDING = 1e-12

@@ -13,8 +13,6 @@ from evodesign.records import Case
 if TYPE_CHECKING:
     from evodesign.problem.ergonomics import Ergonomics
 
-__all__ = ["TITLE", "TITLE_OF_SEVERAL", "Asked", "hardest_cases", "people_table", "person_table"]
-
 Asked = tuple[Case, "Ergonomics"]
 """A case, and what its posture asks of the person."""
 

@@ -16,8 +16,6 @@ from evodesign.records import Assessment
 from evodesign.runlog.run import RunLog
 from evodesign.violations import constraints_json
 
-__all__ = ["polish_json", "polish_tables"]
-
 
 def polish_tables(problem: DesignProblem, number: int, done: Polished) -> tuple[FittedTable, ...]:
     """Objectives, constraints and changed parameters before and after."""

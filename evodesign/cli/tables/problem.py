@@ -20,8 +20,6 @@ from evodesign.problem.preflight import Finding
 from evodesign.records import Constraint
 from evodesign.violations import bounds_text
 
-__all__ = ["findings_table", "model_tables", "rules_table"]
-
 CAPTION = (
     "sizes [m]: box x, y, z; cylinder radius, length; sphere radius; density [kg/m^3]\n"
     "grows along: direction in the link's frame in which it gets longer; -: keeps its size"

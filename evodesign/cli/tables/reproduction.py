@@ -13,8 +13,6 @@ from evodesign.cli.output import rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.report.reproduction import Reproduction
 
-__all__ = ["claims_table", "reproduction_lines", "stricter_table", "torque_table", "verdict_lines"]
-
 
 def torque_table(done: Reproduction) -> FittedTable:
     """Table II of the paper with ours beside it, row under row."""

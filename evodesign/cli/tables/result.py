@@ -18,8 +18,6 @@ from evodesign.runlog.run import RunLog
 from evodesign.runlog.sampled_file import read_sampled
 from evodesign.violations import bounds_text
 
-__all__ = ["chosen_designs", "next_commands", "result_lines", "result_table"]
-
 MOST_KNEES = 5
 """Knees in the table; `evodesign front --knee` shows all."""
 

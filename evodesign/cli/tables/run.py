@@ -7,8 +7,6 @@ from typing import Any
 from evodesign.runlog.directory import run_segments
 from evodesign.runlog.run import RunLog, digest
 
-__all__ = ["run_json", "run_lines"]
-
 
 def run_json(run: RunLog) -> dict[str, Any]:
     """What a run holds as a JSON object; its shape is a promise."""

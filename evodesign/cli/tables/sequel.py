@@ -10,8 +10,6 @@ from evodesign.cli.tables.reproduction import verdict_lines
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.report.sequel import SequelReproduction
 
-__all__ = ["built_lines", "robots_table", "sequel_lines"]
-
 
 def robots_table(done: SequelReproduction) -> FittedTable:
     """The sequel's robots and ours: fitness there and here, torques, mass, reach.

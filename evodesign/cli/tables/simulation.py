@@ -11,8 +11,6 @@ from evodesign.problem.simulations import SimulatedCase
 from evodesign.simulation.feedback import Feedback
 from evodesign.simulation.outcome import SETTLED
 
-__all__ = ["simulation_table"]
-
 
 def simulation_table(title: str, simulations: Sequence[SimulatedCase], feedback: Feedback) -> FittedTable:
     """How far robot, person and load were from their plan in each case."""

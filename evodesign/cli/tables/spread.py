@@ -9,8 +9,6 @@ from evodesign.cli.output import heading, markup, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import Constraint, Objective
 
-__all__ = ["quantities_table", "spread_table"]
-
 CAPTION = "mean ± standard deviation over people of the measured distribution (docs/person.md)"
 
 

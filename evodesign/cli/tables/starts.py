@@ -15,8 +15,6 @@ from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Case
 
-__all__ = ["starts_json", "starts_tables"]
-
 
 def starts_tables(problem: DesignProblem, known: Precomputed) -> tuple[FittedTable, FittedTable]:
     """Coverage of each portfolio of starts, and errors of each value function of the person."""

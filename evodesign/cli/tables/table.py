@@ -19,8 +19,6 @@ from evodesign.cli.output import heading, printable, rounded
 from evodesign.records import Evaluation, RunHeader
 from evodesign.violations import bounds_text
 
-__all__ = ["FittedTable", "TableColumn", "designs_table", "names", "numbers", "titled"]
-
 COMFORTABLE = 9
 """Cells to which a column of text is narrowed at most, unless a word is longer."""
 

@@ -13,8 +13,6 @@ from evodesign.validation.holds import LOAD, SOMEONE, ComparedHold, hold_differe
 from evodesign.validation.measured import HANGING, HOLDING
 from evodesign.validation.posed import Posed
 
-__all__ = ["validation_tables"]
-
 COLUMNS = ("statics", "predicted", "least torque")
 """In the order of `WAYS`."""
 

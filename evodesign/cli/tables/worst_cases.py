@@ -10,8 +10,6 @@ from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import AgentDetail, CaseDetail
 from evodesign.report.subset import ranked_joints
 
-__all__ = ["forces_by_height", "torques_by_height", "worst_forces", "worst_torques"]
-
 JOINTS_SHOWN = 6
 """Rows of joints per agent; the others have smaller torques."""
 

@@ -28,8 +28,6 @@ from evodesign.nlp.native.source import UNBOUNDED
 from evodesign.nlp.native.structures import BlockRecord, Memory
 from evodesign.nlp.program import Array
 
-__all__ = ["BlockFunctions", "NativeBlocks", "NativeMaker", "block_functions", "native_maker"]
-
 Integers = NDArray[np.int64]
 
 

@@ -21,8 +21,6 @@ from evodesign.nlp.method import NEAR_BARRIER, NEAR_PUSH, SolverOptions
 from evodesign.nlp.native.source import HERE, METHOD_FILES
 from evodesign.nlp.program import Array
 
-__all__ = ["NOT_LOADED", "CSolution", "CalledSolver", "method_library"]
-
 METHOD_FLAGS = ("-std=c11", "-O2", "-shared", "-fPIC", "-ffp-contract=off")
 
 WORDS = (

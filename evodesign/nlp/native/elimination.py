@@ -21,8 +21,6 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Elimination", "Entries", "determined", "elimination"]
-
 Integers = NDArray[np.int32]
 
 NOT_AN_ENTRY = 1e3

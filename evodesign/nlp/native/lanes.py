@@ -17,8 +17,6 @@ from pathlib import Path
 
 from evodesign.nlp.compiler import Compiler
 
-__all__ = ["LANES", "LANES_SYMBOL", "in_lanes", "in_one_lane", "lane_flags"]
-
 LANES = 4
 """Arguments that are worked on at once."""
 

@@ -27,8 +27,6 @@ from evodesign.nlp.native.calls import NOT_LOADED, CalledSolver, method_library
 from evodesign.nlp.native.source import PROBLEM, fixed_variables, program_text
 from evodesign.nlp.program import Array, Program
 
-__all__ = ["NativeMethod", "native_method"]
-
 WORTH = 5e-6
 """Time [s] that a program must have been solved for, per byte of TinyCC's code, to be worth optimising.
 

@@ -11,8 +11,6 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-__all__ = ["in_pieces"]
-
 PIECE = 1000
 """Statements in a piece: fewer cost time in handing numbers on, more cost time in compiling."""
 

@@ -19,8 +19,6 @@ from numpy.typing import NDArray
 from evodesign.nlp.native.elimination import Entries
 from evodesign.nlp.program import Array
 
-__all__ = ["Scatter", "Targets", "hessian_targets", "jacobian_targets", "scattered"]
-
 Integers = NDArray[np.int64]
 Places = tuple[Integers, Integers]
 

@@ -18,8 +18,6 @@ from evodesign.nlp.native.elimination import Elimination, Entries, determined, e
 from evodesign.nlp.native.switched import FunctionSymbols, SwitchedRow, switched_rows
 from evodesign.nlp.program import Array, Program
 
-__all__ = ["METHOD_FILES", "PROBLEM", "fixed_variables", "program_text"]
-
 PROBLEM = "evodesign_problem"
 """Function of the library that gives the problem."""
 

@@ -10,8 +10,6 @@ import numpy as np
 
 from evodesign.nlp.native.scatter import Scatter
 
-__all__ = ["BlockProblem", "BlockRecord", "Memory"]
-
 _Integers, _Reals = ctypes.POINTER(ctypes.c_int), ctypes.POINTER(ctypes.c_double)
 _Fields = tuple[tuple[str, Any], ...]
 

@@ -9,8 +9,6 @@ import casadi as ca
 
 from evodesign.nlp.program import Program
 
-__all__ = ["FunctionSymbols", "SwitchedRow", "switched_rows"]
-
 
 @dataclass(frozen=True, slots=True)
 class FunctionSymbols:

@@ -16,17 +16,16 @@ from evodesign.human.measured_posture import MeasuredPosture
 from evodesign.identity import Exceptions, digest
 from evodesign.mechanics.scene import Agent, Payload, Scene
 from evodesign.nlp.landscape import Landscape
+from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Start
-from evodesign.nlp.solver import RawSolution, SolverOptions
+from evodesign.nlp.solver import RawSolution
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.candidate import Trial
 from evodesign.posture.check import Checker
 from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.records import ActiveLimit, Task
-
-__all__ = ["NO_PART_OF_PROGRAMS", "Formulation", "Setting", "program_key"]
 
 
 @dataclass(frozen=True, slots=True)

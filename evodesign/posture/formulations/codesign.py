@@ -27,10 +27,12 @@ from dataclasses import dataclass, replace
 import casadi as ca
 import numpy as np
 
-from evodesign.design.space import DesignSpace, ParameterKind
+from evodesign.design.parameter import ParameterKind
+from evodesign.design.space import DesignSpace
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Scene
+from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import Array, Expression, Program, Start, Variable
-from evodesign.nlp.solver import RawSolution, Solver, SolverOptions
+from evodesign.nlp.solver import RawSolution, Solver
 from evodesign.posture.allocation import EffortWeights, shared_scene
 from evodesign.posture.assemble import CaseSymbols, Embodied, LoadCase, assemble
 from evodesign.posture.candidate import checked
@@ -46,9 +48,6 @@ from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.terms.torque import effort
 from evodesign.posture.warm_start import instants_of, layout_of, start_from
 from evodesign.records import Genome, Hold, Status
-
-__all__ = ["JointProblem", "JointSettings", "JointSolution", "drawn_postures", "standard_postures"]
-
 
 NAME = "codesign"
 """Of the formulation, in results."""

@@ -50,9 +50,6 @@ from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.warm_start import Layout, instants_of, layout_of, start_from
 from evodesign.records import ActiveLimit, Status, Task, worst_status
 
-__all__ = ["DecoupledPostures", "robot_program"]
-
-
 AT_LIMIT = 1e-6
 """How little below its limit an internal force [N] counts as being there; IPOPT ends a little before it."""
 

@@ -25,8 +25,9 @@ from numpy.polynomial import Chebyshev
 from numpy.polynomial.chebyshev import chebder, chebval
 
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
+from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import Array, ConstraintBlock, Program
-from evodesign.nlp.solver import RawSolution, Solver, SolverCache, SolverOptions
+from evodesign.nlp.solver import RawSolution, Solver, SolverCache
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.check import TOLERANCE, AgentModel, near_bodies
 from evodesign.posture.formulations.base import program_key
@@ -40,9 +41,6 @@ from evodesign.posture.terms.measured_posture import any_person, person_paramete
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.warm_start import instants_of, layout_of
 from evodesign.records import Status
-
-__all__ = ["COEFFICIENTS", "COST_UNIT", "HumanProblem", "HumanValue", "chebyshev_sum", "human_program"]
-
 
 DEGREE = 8
 COEFFICIENTS = DEGREE + 1

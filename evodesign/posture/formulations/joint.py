@@ -45,8 +45,6 @@ from evodesign.posture.warm_start import filled, instants_of, layout_of, start_f
 from evodesign.records import ActiveLimit, Status
 from evodesign.tasks import Hold, Task, TaskRecord
 
-__all__ = ["JointPostures", "posture_program"]
-
 
 class JointPostures:
     """A posture program over the given forms of both agents.

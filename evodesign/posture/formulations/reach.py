@@ -25,10 +25,11 @@ import numpy as np
 
 from evodesign.mechanics.scene import ROBOT, Scene
 from evodesign.nlp.landscape import Landscape
+from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import ConstraintBlock, Program, Start, Variable
 from evodesign.nlp.sensitivity import SolutionSensitivity
-from evodesign.nlp.solver import RawSolution, Solver, SolverCache, SolverOptions
+from evodesign.nlp.solver import RawSolution, Solver, SolverCache
 from evodesign.posture.allocation import shared_scene
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.formulations.base import Setting, program_key
@@ -42,19 +43,6 @@ from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.warm_start import filled, layout_of
 from evodesign.records import Status, worst_status
 from evodesign.tree.model import Tree
-
-__all__ = [
-    "HEIGHT",
-    "HIGHEST",
-    "LEAST",
-    "LOWEST",
-    "Reach",
-    "ReachProblem",
-    "common_reach",
-    "person_reach",
-    "reach_program",
-    "robot_reach_program",
-]
 
 WEIGHT_OF_REGULARISATION = 1e-4
 """Beside the height [m]; it costs less than 0.1 mm of reach."""

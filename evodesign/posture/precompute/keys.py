@@ -6,14 +6,12 @@ from collections.abc import Mapping
 
 from evodesign.identity import Exceptions, code_digest, digest
 from evodesign.mechanics.scene import Agent, Payload, Scene, scene_of
-from evodesign.nlp.solver import SolverOptions
+from evodesign.nlp.method import SolverOptions
 from evodesign.posture.precompute.plan import (
     Piece,
     PrecomputeSetting,
     Subject,
 )
-
-__all__ = ["key_of", "no_part_of"]
 
 CODE, CODE_OF_LIFTS = "evodesign.posture.precompute.pieces", "evodesign.motion.starts"
 """The modules that work pieces out."""

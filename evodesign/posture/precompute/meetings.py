@@ -34,8 +34,6 @@ _Values = tuple[float, ...]
 _Near = dict[_Met, float]
 """Pairs of a posture with their distances [m]."""
 
-__all__ = ["REACH", "found_meetings", "with_meetings"]
-
 REACH = "reach"
 """Whose pairs are the robot's at extreme heights, beside those of the agents."""
 

@@ -17,8 +17,9 @@ import numpy as np
 from evodesign.collision.rules import BodyPair
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
 from evodesign.nlp.landscape import Design, spread_designs
+from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import Start
-from evodesign.nlp.solver import BRIEF, SolverCache, SolverOptions
+from evodesign.nlp.solver import BRIEF, SolverCache
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.nlp.start_training import USUAL, start_portfolio
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
@@ -34,8 +35,6 @@ from evodesign.posture.precompute.plan import (
 from evodesign.posture.precompute.precomputed import HeldLoads, PersonReach, Precomputed
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.records import Case, Hold, Status, Task
-
-__all__ = ["compute_piece", "encoded_piece", "with_piece"]
 
 LEARNED_FROM, LOOKED_AT = 96, 8
 """Designs whose reach is asked for, at most, to learn from those that hold a load; and how many times as many

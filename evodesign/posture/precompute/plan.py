@@ -9,21 +9,11 @@ from enum import StrEnum
 from evodesign.design.space import DesignSpace
 from evodesign.human.measured_posture import MEAN_PERSON
 from evodesign.mechanics.scene import Grasp, Scene
-from evodesign.nlp.solver import SolverOptions
+from evodesign.nlp.method import SolverOptions
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import Symmetry
 from evodesign.records import Hold, Lift, Task
-
-__all__ = [
-    "OF_STARTS",
-    "Piece",
-    "PrecomputeSetting",
-    "Subject",
-    "all_mean_people",
-    "lift_pieces",
-    "stages",
-]
 
 
 class Subject(StrEnum):

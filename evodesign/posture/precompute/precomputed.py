@@ -19,8 +19,6 @@ from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.formulations.human_value import HumanValue
 from evodesign.records import Case, Lift, Task
 
-__all__ = ["NOTHING_PRECOMPUTED", "NO_STARTS", "HeldLoads", "PersonReach", "Precomputed"]
-
 NO_STARTS = StartPortfolio((), Coverage(0, 0, 0.0))
 """A portfolio of none: solves begin at the fixed starts."""
 

@@ -31,27 +31,6 @@ from evodesign.posture.symmetry import WRENCH, Form
 from evodesign.tree.kinematics import Pose
 from evodesign.tree.model import Tree
 
-__all__ = [
-    "FORCE_UNIT",
-    "HAND_UNIT",
-    "REGULARISATION",
-    "TORQUE_UNIT",
-    "Body",
-    "BodyTerm",
-    "Bound",
-    "Coupled",
-    "Held",
-    "MeasuredBody",
-    "MeasuredSystem",
-    "Residual",
-    "Row",
-    "SystemTerm",
-    "Unknown",
-    "both_ways",
-    "bounds_of",
-    "hand_wrench",
-]
-
 Array = NDArray[np.float64]
 Expression = Any
 

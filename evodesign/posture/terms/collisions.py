@@ -51,22 +51,8 @@ from evodesign.posture.terms.base import (
     SystemTerm,
 )
 from evodesign.tree.kinematics import Expression, Pose, pose_from
+from evodesign.tree.mirror_pairs import Mirror
 from evodesign.tree.model import Tree
-from evodesign.tree.symmetry import Mirror
-
-__all__ = [
-    "CLEAR",
-    "COLLISIONS",
-    "NUMBERS",
-    "OFF",
-    "OVERLAP",
-    "PARTING",
-    "Meeting",
-    "directed",
-    "margin_of",
-    "meetings",
-    "placed_pairs",
-]
 
 PARTING, NUMBERS = "parting", 7
 """What an agent holds of the directions that part its bodies: on, a and b of each."""

@@ -16,8 +16,6 @@ from collections.abc import Iterator
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.terms.base import Body, BodyTerm, Bound, MeasuredBody, Residual, Row
 
-__all__ = ["COUPLED_JOINTS"]
-
 
 def rows(body: Body) -> Iterator[Row]:
     """A row for each shared range of which some joint is a variable [rad]."""

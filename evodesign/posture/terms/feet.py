@@ -34,8 +34,6 @@ from evodesign.posture.terms.base import (
     both_ways,
 )
 
-__all__ = ["FEET", "UPRIGHT"]
-
 STRONGEST = 5000.0  # [N] and [N m] of a foot
 RESTING = [0.0, 0.0, 300.0, 0.0, 0.0, 0.0]
 """A foot's wrench in the program's own start [N, N m]."""

@@ -18,8 +18,6 @@ from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.terms.base import Body, BodyTerm, Bound, MeasuredBody, Residual, Row
 from evodesign.tree.kinematics import Expression
 
-__all__ = ["FEET_GAP"]
-
 NAME = "feet_gap"
 
 

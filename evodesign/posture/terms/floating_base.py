@@ -18,8 +18,6 @@ from evodesign.posture.terms.base import BodyTerm, Bound, MeasuredBody, Residual
 from evodesign.tree.kinematics import Pose, forward
 from evodesign.tree.model import Joint, JointKind
 
-__all__ = ["FLOATING_BASE", "coordinate_ranges", "joint_ranges"]
-
 
 def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
     """Position [m] and angles [rad] of the base, and the coordinates of the joints [rad]."""

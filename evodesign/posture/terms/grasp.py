@@ -31,8 +31,6 @@ from evodesign.posture.terms.base import (
 )
 from evodesign.tree.kinematics import vector
 
-__all__ = ["GRASP", "GRASP_ROWS", "hand_unknowns", "moment_cost"]
-
 STRONGEST = 300.0  # [N] and [N m] of a hand, beyond any holding posture
 
 GRASP_ROWS = {Grasp.POINT: 3, Grasp.RIGID: 6}

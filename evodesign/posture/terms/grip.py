@@ -21,8 +21,6 @@ from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.terms.base import Body, BodyTerm, Bound, MeasuredBody, Residual, Row
 from evodesign.tree.kinematics import vector
 
-__all__ = ["GRIP"]
-
 
 def directed(agent: Agent, payload: Payload, sides: Iterable[str]) -> Iterator[tuple[str, Vector, Elbow]]:
     """Sides whose forearms are not free, with the axis of their cone and the elbow."""

@@ -42,8 +42,6 @@ from evodesign.posture.terms.base import (
 )
 from evodesign.tree.kinematics import Expression, vector
 
-__all__ = ["INTERNAL_FORCE", "LOAD", "LOAD_UNIT", "PUSH", "any_load", "force_along_x", "turned_to_world"]
-
 PUSH = "load.push"
 """Name of the row that bounds the internal force."""
 

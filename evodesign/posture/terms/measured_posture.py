@@ -30,8 +30,6 @@ from evodesign.posture.terms.base import Body, BodyTerm, Expression
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 
-__all__ = ["MEASURED_POSTURE", "any_person", "chords", "deviation", "features", "person_parameters"]
-
 DRAWN = "drawn_person"
 """Name of the parameter that holds the standard normal numbers of a person."""
 

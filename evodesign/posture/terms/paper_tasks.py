@@ -18,14 +18,12 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from evodesign.design.space import DesignSpace, ParameterKind
+from evodesign.design.parameter import ParameterKind
+from evodesign.design.space import DesignSpace
 from evodesign.mechanics.balance import standing_height_of_mass
 from evodesign.mechanics.scene import Agent
 from evodesign.tree.kinematics import Expression
 from evodesign.tree.model import Tree
-
-__all__ = ["TaskWeights", "Tasks", "density_task", "mass_height_task", "pressure_task"]
-
 
 DENSITY_UNIT = 1000.0  # [kg/m^3]
 SMOOTHING = 0.01

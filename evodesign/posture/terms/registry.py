@@ -19,8 +19,6 @@ from evodesign.posture.terms.regularisation import POSTURE_REGULARISATION, WRENC
 from evodesign.posture.terms.stance import STANCE
 from evodesign.posture.terms.torque import TORQUE
 
-__all__ = ["TERMS"]
-
 TERMS: Mapping[str, BodyTerm | SystemTerm] = {
     "floating_base": FLOATING_BASE,
     "grasp": GRASP,

@@ -8,8 +8,6 @@ from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.terms.base import FORCE_UNIT, HAND_UNIT, REGULARISATION, Body, BodyTerm, Expression
 from evodesign.posture.terms.floating_base import joint_ranges
 
-__all__ = ["POSTURE_REGULARISATION", "WRENCH_REGULARISATION"]
-
 
 def posture_cost(body: Body) -> Expression:
     """Bent joints and a tilted base, slightly disliked."""

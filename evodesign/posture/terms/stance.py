@@ -16,8 +16,6 @@ from evodesign.mechanics.scene import SIDES
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.terms.base import Body, BodyTerm, Bound, MeasuredBody, Residual, Row, both_ways
 
-__all__ = ["STANCE"]
-
 
 def rows(body: Body) -> Iterator[Row]:
     """Trunk frames behind the load's edge, and the soles' distances."""

@@ -43,8 +43,6 @@ from evodesign.posture.terms.load import turned_to_world
 from evodesign.tree.equip import rated_torques
 from evodesign.tree.kinematics import vector
 
-__all__ = ["TORQUE", "asked", "effort"]
-
 Array = NDArray[np.float64]
 
 LARGEST_TORQUE = 1000.0  # [N m]; bounds a joint without a limit

@@ -25,8 +25,6 @@ from evodesign.tree.frames import link_frames
 from evodesign.tree.model import JointKind, Tree
 from evodesign.tree.welded import WeldedBody, WeldedTree
 
-__all__ = ["BodyPlan", "body_plan"]
-
 SIGNIFICANT = 0.005
 """Distance [m] below which feet and knees say nothing of the heading."""
 

@@ -19,8 +19,6 @@ from evodesign.tree.frames import link_frames
 from evodesign.tree.model import JointKind, Tree
 from evodesign.tree.resize import resize
 
-__all__ = ["LengthBound", "length_bounds"]
-
 LOWER, UPPER, STEP = 0.6, 1.6, 0.05
 """Bounds of length multipliers where nothing is in the way, and how finely others are found."""
 

@@ -36,8 +36,6 @@ from evodesign.problem.guess.limbs import Limb
 from evodesign.tree.mesh_write import vertices_of
 from evodesign.tree.welded import WeldedBody, WeldedTree
 
-__all__ = ["Contacts", "GuessedContact", "contacts", "frame_xyz_rpy"]
-
 SLAB = 0.02
 """Height above a foot's lowest point up to which it counts as its sole [m]."""
 

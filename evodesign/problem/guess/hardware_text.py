@@ -23,8 +23,6 @@ from evodesign.problem.guess.limbs import Limb
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Joint
 
-__all__ = ["hardware_text"]
-
 ALONG = 0.7
 """Least cosine between a joint's axis and the direction about which it turns."""
 

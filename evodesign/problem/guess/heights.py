@@ -31,8 +31,6 @@ from evodesign.tree.model import Tree
 from evodesign.tree.urdf_write import urdf_text
 from evodesign.tree.welded import without_frames
 
-__all__ = ["HeldHeights", "held_heights"]
-
 FIRST, LAST_FIRST, LAST = 0.5, 0.65, 0.75
 """Of the way from the lowest to the highest load: where heights begin and end."""
 

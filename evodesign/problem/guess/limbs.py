@@ -19,8 +19,6 @@ from typing import Literal
 from evodesign.body.placement import Vector, add, scale
 from evodesign.tree.welded import WeldedBody, WeldedTree
 
-__all__ = ["FEWEST_JOINTS", "Limb", "LimbPair", "limb_from", "limb_pairs"]
-
 FEWEST_JOINTS = 3
 """Joints of a limb."""
 

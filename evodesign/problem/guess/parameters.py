@@ -16,8 +16,6 @@ from evodesign.problem.guess.limbs import Limb
 from evodesign.tree.resize import growth_of
 from evodesign.tree.welded import WeldedBody, WeldedTree
 
-__all__ = ["Group", "LoadGuess", "groups", "load_guess"]
-
 SHORTEST = 0.03
 """Length of a segment that is worth changing [m]."""
 

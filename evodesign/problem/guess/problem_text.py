@@ -21,9 +21,6 @@ from evodesign.problem.table import FILL_IN
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_read import InertiaRule
 
-__all__ = ["FILL_IN", "Guess", "GuessedProblem", "guessed_problem", "inertia_rule"]
-
-
 KNEE_FLEXION = 15
 """Least angle of knees [deg]: our choice."""
 

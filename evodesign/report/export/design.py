@@ -30,8 +30,6 @@ from evodesign.report.scene_models import SceneModels, SceneSet
 from evodesign.tree.model import JointKind, Tree
 from evodesign.violations import constraints_json
 
-__all__ = ["ExportedDesign", "design_json", "postures_csv", "wrenches_csv"]
-
 Row = Sequence[str | float]
 
 POSTURE_COLUMNS = ("height_m", "agent", "kind", "name", "position", "position_unit", "torque", "torque_unit")

@@ -27,8 +27,6 @@ from evodesign.tree.mesh_write import mesh_files
 from evodesign.tree.mjcf_write import KeyPosture, mjcf_text
 from evodesign.tree.urdf_write import urdf_text
 
-__all__ = ["Exported", "export_design", "export_logged", "refuse_full"]
-
 
 @dataclass(frozen=True, slots=True)
 class Exported:

@@ -12,8 +12,6 @@ from evodesign.report.replay.messages import METRES_PER_NEWTON, METRES_PER_NEWTO
 from evodesign.report.replay.recording import SECONDS_PER_CASE, several, timed
 from evodesign.violations import bounds_text, reason_of_infeasibility
 
-__all__ = ["FILES", "MESHES", "readme_text"]
-
 MESHES: Final = "meshes"
 """The folder of mesh files."""
 

@@ -12,8 +12,6 @@ from evodesign.report.figures.posture_figure import posture_figure
 from evodesign.report.figures.posture_views import front_figure, side_figure
 from evodesign.report.scene_models import SceneSet
 
-__all__ = ["write_design_figures"]
-
 
 def write_design_figures(
     name: str, scene_set: SceneSet, cases: Sequence[CaseDetail], directory: Path

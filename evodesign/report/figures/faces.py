@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from evodesign.body.placement import Placement, Vector
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 
-__all__ = ["AROUND", "Face", "faces_of"]
-
 Array = NDArray[np.float64]
 
 AROUND = 18

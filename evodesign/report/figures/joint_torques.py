@@ -19,8 +19,6 @@ from matplotlib.figure import Figure
 
 from evodesign.report.figures.paint import INK, clean, color_of, new_figure
 
-__all__ = ["joint_torques", "torque_boxes"]
-
 BOX, CLOUD = 0.36, 0.30
 """Width of a box, and distance of its dots."""
 

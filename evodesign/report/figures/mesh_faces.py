@@ -9,8 +9,6 @@ from evodesign.body.placement import Placement
 from evodesign.tree.mesh_write import triangles_of, vertices_of
 from evodesign.tree.model import Mesh
 
-__all__ = ["in_world", "seen_triangles"]
-
 Array = NDArray[np.float64]
 
 

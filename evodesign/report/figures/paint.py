@@ -19,18 +19,6 @@ from matplotlib.figure import Figure
 from evodesign.errors import InputError
 from evodesign.files import replacing
 
-__all__ = [
-    "GROUND_FORCE",
-    "HAND_FORCE",
-    "INK",
-    "PALE",
-    "SEQUENCE",
-    "clean",
-    "color_of",
-    "new_figure",
-    "write_figure",
-]
-
 INK: Final = "#24292f"
 PALE: Final = "#d8dce1"
 GROUND_FORCE: Final = "#e07b00"

@@ -35,8 +35,6 @@ from evodesign.report.figures.mesh_faces import in_world, seen_triangles
 from evodesign.report.figures.paint import AGENTS, GROUND_FORCE, HAND_FORCE, INK, PALE, new_figure
 from evodesign.report.scene_models import LOAD, ContactWrench, PlacedScene
 
-__all__ = ["Camera", "posture_figure"]
-
 Array = NDArray[np.float64]
 
 Painted = tuple[float, Array, tuple[float, float, float]]

@@ -16,8 +16,6 @@ from evodesign.body.placement import Placement, rotate
 from evodesign.report.figures.posture_figure import Camera, posture_figure
 from evodesign.report.scene_models import ContactWrench, PlacedScene
 
-__all__ = ["FRONT", "SIDE", "alone", "front_figure", "side_figure"]
-
 SIDE = Camera(azimuth=-math.pi / 2.0, elevation=0.0)
 """From the robot's right: it stands on the left and looks to the right."""
 

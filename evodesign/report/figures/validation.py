@@ -14,8 +14,6 @@ from evodesign.validation.compare import POSTURES, ComparedCase
 from evodesign.validation.measured import EMPTY, HANGING, HOLDING
 from evodesign.validation.posed import CHAIN, Places
 
-__all__ = ["moment_figure", "stick_figures", "write_validation_figures"]
-
 COLORS = {HumanPosture.MEASURED: "#c0504d", HumanPosture.LEAST_TORQUE: "#8fa9c4"}
 LABELS = {HumanPosture.MEASURED: "predicted", HumanPosture.LEAST_TORQUE: "least torque"}
 STATICS = "#5a9367"

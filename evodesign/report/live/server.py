@@ -23,8 +23,6 @@ from typing import Any
 
 from evodesign.errors import EvodesignError, InputError
 
-__all__ = ["ADDRESS", "LiveServer"]
-
 ADDRESS = "127.0.0.1"
 NAMES = (ADDRESS, "localhost")
 HOST = re.compile(rf"({'|'.join(map(re.escape, NAMES))})(:\d{{1,5}})?")

@@ -28,8 +28,6 @@ from evodesign.runlog.follow import Follower
 from evodesign.runlog.gaps import listed, missing
 from evodesign.violations import exceeded_bounds
 
-__all__ = ["MOST_KNEES", "MOST_POINTS", "SAMPLE", "FollowedRun", "LiveRun", "LiveState", "state_of", "word"]
-
 SAMPLE = 1000
 """Most evaluations that are kept beside the front; then every second one is dropped, again and again."""
 

@@ -28,8 +28,6 @@ from evodesign.tree.mesh_write import link_from_vertex
 from evodesign.tree.model import Joint, Link, Mesh, Tree
 from evodesign.tree.surface import Surface
 
-__all__ = ["agent_body", "bodies", "changes"]
-
 
 def bodies(problem: DesignProblem) -> Bodies:
     """Everything that stands in the problem's scenes, the robot unscaled."""

@@ -15,8 +15,6 @@ from typing import Any
 
 import msgspec
 
-__all__ = ["side_by_side"]
-
 Column = tuple[Any, ...]
 """A text or number, or nothing, of each design."""
 

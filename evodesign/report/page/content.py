@@ -12,27 +12,6 @@ from msgspec import Struct
 
 from evodesign.records import CaseDetail, CaseOutcome, Constraint, Generation, Objective, Parameter, Task
 
-__all__ = [
-    "ActuatorContent",
-    "Bodies",
-    "CauseContent",
-    "Content",
-    "DesignContent",
-    "Facts",
-    "HardwareContent",
-    "JointBody",
-    "LinkBody",
-    "LoadBody",
-    "Mark",
-    "MeshBody",
-    "Points",
-    "ShapeBody",
-    "StopContent",
-    "SurfaceBody",
-    "TreeBody",
-    "WallContent",
-]
-
 
 class Part(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Base of the page's parts."""

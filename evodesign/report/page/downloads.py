@@ -23,8 +23,6 @@ from evodesign.runlog.run import RunLog
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_write import urdf_text
 
-__all__ = ["Downloads", "rounded"]
-
 MOST_BYTES = 300_000
 """Of a replay in the page; one of a robot with many triangles is larger, and left out."""
 

@@ -10,8 +10,6 @@ from evodesign.problem.ergonomics import ergonomics
 from evodesign.records import CaseDetail
 from evodesign.report.page.content import EffortContent
 
-__all__ = ["effort_content"]
-
 
 def effort_content(scenes: Sequence[Scene], cases: Sequence[CaseDetail]) -> tuple[EffortContent, ...]:
     """One for each case: in a lift that of the moment at which the person's torques are largest.

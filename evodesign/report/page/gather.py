@@ -47,8 +47,6 @@ from evodesign.runlog.run import RunLog
 from evodesign.runlog.sampled_file import read_sampled
 from evodesign.tree.urdf_write import urdf_text
 
-__all__ = ["Gradients", "gradients_of", "page_content", "with_gradients"]
-
 MOST_LEARNT = 2_000
 """Evaluations that tell what matters in the page; beyond this number they are thinned out evenly."""
 

@@ -11,8 +11,6 @@ from evodesign.records import CaseDetail
 from evodesign.report.page.content import ActuatorContent, HardwareContent, WallContent
 from evodesign.tree.model import Tree
 
-__all__ = ["hardware_content"]
-
 
 def hardware_content(
     problem: DesignProblem, tree: Tree, cases: Sequence[CaseDetail]

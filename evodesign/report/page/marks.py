@@ -17,8 +17,6 @@ from evodesign.report.page.content import Mark, Points
 from evodesign.report.subset import subsample
 from evodesign.violations import reason_of_infeasibility
 
-__all__ = ["MOST_POINTS", "asked", "chosen", "chosen_points", "nearest_to_feasible", "points", "unscaled"]
-
 MOST_KNEES = 3
 MOST_NEAR = 5
 

@@ -10,8 +10,6 @@ from evodesign.records import AgentDetail, CaseDetail, Detail, Evaluation, Insta
 from evodesign.report.page.content import Mark
 from evodesign.report.subset import subsample
 
-__all__ = ["MOMENTS", "details_shown", "shown_cases"]
-
 MOMENTS = 9
 """Moments of a lift that are in the page."""
 

@@ -18,8 +18,6 @@ from plotly.offline import get_plotlyjs
 from evodesign.report.page.columns import side_by_side
 from evodesign.report.page.content import Content, DesignContent
 
-__all__ = ["page_html"]
-
 TEMPLATE = files("evodesign.report.page").joinpath("template")
 
 STYLES = ("palette.css", "layout.css", "parts.css")

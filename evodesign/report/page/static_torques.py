@@ -14,8 +14,6 @@ from evodesign.problem.logged_posture import logged_posture
 from evodesign.records import CaseDetail, InstantDetail, Lift
 from evodesign.tree.model import Tree
 
-__all__ = ["StaticTorques"]
-
 Torques = dict[str, dict[str, float]]
 """By agent and joint [N m]."""
 

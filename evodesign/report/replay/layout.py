@@ -19,8 +19,6 @@ from evodesign.report.replay.surfaces import topics_of
 from evodesign.report.scene_models import LOAD, SceneSet
 from evodesign.report.subset import ranked_joints
 
-__all__ = ["layout_text"]
-
 SCENE, PLOTS = "3D!scene", {ROBOT: "Plot!robot", HUMAN: "Plot!human"}
 
 JOINTS_SHOWN: Final = 6

@@ -37,23 +37,6 @@ from evodesign.report.scene_models import LOAD, PlacedScene, looks_of
 from evodesign.tree.frames import parent_from_child
 from evodesign.tree.model import Tree
 
-__all__ = [
-    "COLORS",
-    "METRES_PER_NEWTON",
-    "METRES_PER_NEWTON_METRE",
-    "TOPICS",
-    "WORLD",
-    "add_arrow",
-    "add_shape",
-    "add_text",
-    "color_of",
-    "frame_id",
-    "messages",
-    "orientation",
-    "pose_of",
-    "vector",
-]
-
 WORLD: Final = "world"
 
 METRES_PER_NEWTON: Final = {True: 0.001, False: 0.02}

@@ -24,20 +24,6 @@ from evodesign.report.replay.messages import messages
 from evodesign.report.replay.surfaces import MESHES, mesh_message, topics_of
 from evodesign.report.scene_models import PlacedScene, SceneSet
 
-__all__ = [
-    "NANOSECONDS",
-    "SECONDS_PER_CASE",
-    "Frame",
-    "Timed",
-    "descriptor_set",
-    "nanoseconds_at",
-    "replay_frames",
-    "several",
-    "time_scale",
-    "timed",
-    "write_frames",
-]
-
 NANOSECONDS: Final = 1_000_000_000
 NANOSECONDS_PER_METRE: Final = 10 * NANOSECONDS
 SECONDS_PER_CASE: Final = 2

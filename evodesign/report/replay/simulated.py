@@ -23,8 +23,6 @@ from evodesign.simulation.outcome import AgentRollout
 from evodesign.tasks import Hold
 from evodesign.tree.urdf_write import urdf_text
 
-__all__ = ["write_simulations"]
-
 PAUSE = 1.0
 """Between two simulations [s]."""
 

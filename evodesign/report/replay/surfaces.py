@@ -22,8 +22,6 @@ from evodesign.report.scene_models import SceneSet
 from evodesign.tree.mesh_write import triangles_of, vertices_of
 from evodesign.tree.model import Link
 
-__all__ = ["MESHES", "mesh_message", "topics_of"]
-
 MESHES: Final = "/scene/robot_meshes"
 """Their topic."""
 

@@ -30,8 +30,6 @@ from numpy.typing import NDArray
 from evodesign.searches.surrogate.global_model import FittedModel, GlobalModel
 from evodesign.searches.surrogate.local_residual import LocalResidual
 
-__all__ = ["FEWEST_FIRST", "FIRST_PER_DIMENSION", "KEPT", "REDRAWN", "Approximation", "Known"]
-
 Array = NDArray[np.float64]
 Function = Callable[[Array], Array]
 """From points [points x dimension] to outputs [points x outputs]."""

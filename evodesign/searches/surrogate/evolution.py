@@ -21,8 +21,6 @@ from numpy.typing import NDArray
 
 from evodesign.searches.discrete import snapped
 
-__all__ = ["MEMBERS", "Judged", "Members", "evolved"]
-
 Array = NDArray[np.float64]
 
 MEMBERS = 100

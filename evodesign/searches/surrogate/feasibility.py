@@ -20,8 +20,6 @@ from numpy.typing import NDArray
 
 from evodesign.searches.surrogate.approximation import Function
 
-__all__ = ["LATEST", "Feasibility", "margins_of_violations"]
-
 Array = NDArray[np.float64]
 
 STEEPNESS, CAREFUL = 2.4, -0.9

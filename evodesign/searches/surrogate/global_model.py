@@ -27,8 +27,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
-__all__ = ["MOST_FEATURES", "FittedModel", "GlobalModel"]
-
 Array = NDArray[np.float64]
 
 MOST_FEATURES, FEWEST_FEATURES, FEATURES_PER_PAIR = 600, 100, 2

@@ -31,8 +31,6 @@ from evodesign.searches.surrogate.approximation import (
 )
 from evodesign.searches.surrogate.feasibility import LATEST, Feasibility, margins_of_violations
 
-__all__ = ["Knowledge"]
-
 Array = NDArray[np.float64]
 
 NEWEST = 200

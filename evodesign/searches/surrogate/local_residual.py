@@ -14,8 +14,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["LocalResidual", "squared_distances"]
-
 Array = NDArray[np.float64]
 
 FADING = 0.25

@@ -21,8 +21,6 @@ from evodesign.searches.surrogate.feasibility import Feasibility
 from evodesign.searches.surrogate.knowledge import Knowledge
 from evodesign.searches.surrogate.selection import FRONT, chosen
 
-__all__ = ["proposals"]
-
 Array = NDArray[np.float64]
 
 OF_ONE_SAMPLE = 4

@@ -26,8 +26,6 @@ from evodesign.searches.surrogate.knowledge import Knowledge
 from evodesign.searches.surrogate.proposal import proposals
 from evodesign.searches.surrogate.threads import one_thread
 
-__all__ = ["AsynchronousSurrogate", "Surrogate"]
-
 BATCH = 8
 """Genomes proposed at once where there are no generations."""
 

@@ -18,8 +18,6 @@ from numpy.typing import NDArray
 
 from evodesign.searches.surrogate.evolution import Members
 
-__all__ = ["FRONT", "chosen"]
-
 Array = NDArray[np.float64]
 
 FRONT = {3: 500, 4: 200, 5: 80}

@@ -9,8 +9,6 @@ from typing import Any
 import scipy.linalg  # noqa: F401  # so that its BLAS is loaded when libraries are looked for
 from threadpoolctl import ThreadpoolController
 
-__all__ = ["one_thread"]
-
 
 def one_thread() -> AbstractContextManager[Any]:
     """While it lasts, BLAS has one thread."""

@@ -15,7 +15,7 @@ from evodesign.problem.model_json import model_json
 from evodesign.records import ProblemSource
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
-from tests.fuzz.test_fuzz_inputs import PROBLEM, TEXTS
+from tests.fuzz.input_cases import PROBLEM, TEXTS
 from tests.problem.test_loads import TABLES, source_with
 
 

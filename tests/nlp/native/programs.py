@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
 
-__all__ = ["RandomProgram", "random_program"]
-
 Array = NDArray[np.float64]
 
 FILLED = 0.3

@@ -7,7 +7,8 @@ import math
 
 import pytest
 
-from evodesign.human.anthropometry import Person, Sex
+from evodesign.human.anthropometry import Person
+from evodesign.human.anthropometry_tables import Sex
 from evodesign.problem.guess.body_plan import body_plan
 from evodesign.problem.guess.heights import HeldHeights, held_heights
 from evodesign.problem.guess.problem_text import guessed_problem

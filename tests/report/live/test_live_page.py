@@ -14,9 +14,10 @@ import pytest
 
 from evodesign.analysis.front import front
 from evodesign.errors import InputError, RunError
-from evodesign.evolve import Silent, resume, start
+from evodesign.evolve import resume, start
 from evodesign.report.live.server import ADDRESS, LiveServer
 from evodesign.report.live.state import FollowedRun, LiveRun, state_of
+from evodesign.runlog.session_log import Silent
 from tests.faults.synthetic import synthetic_header
 from tests.machine import chromium
 from tests.runlog.toys import OrderedPool, ToyTask, toy_evaluations, toy_generation, toy_header
