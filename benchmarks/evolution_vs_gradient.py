@@ -11,7 +11,7 @@ design evaluated height by height is one, and a polish is one.
                the postures that they have
 
 A trace holds one row per solve: cost, torques and processor time so far. Building and compiling the programs
-and the person's value function are not counted. Results go to benchmarks/results/evolution_vs_gradient.json
+are not counted. Results go to benchmarks/results/evolution_vs_gradient.json
 and are printed as Markdown tables.
 
     python benchmarks/evolution_vs_gradient.py [--seeds 10] [--solves 120] [--jobs 2]
@@ -64,7 +64,7 @@ Step = tuple[Genome, dict[str, float], float | None, float, DesignResult | None]
 
 
 def _known(problem: DesignProblem) -> Precomputed:
-    """Seeds and the person's part, from the cache or worked out now."""
+    """Starts, from the cache or worked out now."""
     with make_pool("joblib", 2) as pool:
         return cached_precomputed(problem, pool)
 

@@ -1,8 +1,7 @@
 """What one design costs.
 
-Medians per solve on one core, with compiled functions and on CasADi's virtual machine: reach, the robot
-against the person's value function, both agents symmetrically, and whole; the first two from the problem's
-seeds, the others from their fixed starts. Then whole evaluations: designs per second and core, the share of
+Medians per solve on one core, with compiled functions and on CasADi's virtual machine: reach from the
+problem's starts, both agents symmetrically and whole from their fixed starts. Then whole evaluations: designs per second and core, the share of
 the time spent outside IPOPT, two workers against one, and the paper's own formulation of the same posture
 problem. Processor time is given beside wall time, since a machine may be shared. Results go to
 benchmarks/results/inner_speed.json and are printed as Markdown tables.
@@ -76,8 +75,6 @@ def _landscapes(
     reach = ReachProblem(setting, symmetric=True)
     yield "highest load", reach.landscape(HIGHEST), known.highest.starts
     yield "lowest load", reach.landscape(LOWEST), known.lowest.starts
-    decoupled = PostureProblem(setting, Symmetry.ON, known)
-    yield "robot against V(X), 1.0 m", decoupled.landscape(HOLD), known.starts(problem.scene.pair, HOLD)
     for name, symmetry in (("both, symmetric, 1.0 m", Symmetry.ON), ("both, whole, 1.0 m", Symmetry.OFF)):
         joint = PostureProblem(setting, symmetry).landscape(HOLD)
         yield name, joint, joint.starts

@@ -20,8 +20,8 @@ from evodesign.human.population import population
 from evodesign.mechanics.scene import ROBOT, Payload, Scene
 from evodesign.nlp.landscape import cost_of
 from evodesign.nlp.method import SolverOptions
-from evodesign.nlp.solver import RawSolution
-from evodesign.posture.formulations.human_value import HumanProblem
+from evodesign.nlp.solver import RawSolution, SolverCache
+from evodesign.posture.formulations.person import PersonProblem
 from evodesign.posture.measured_starts import measured_starts
 from evodesign.posture.results import Array
 from evodesign.posture.symmetry import half
@@ -38,7 +38,7 @@ def costs_of_hold(rng: np.random.Generator, starts: int) -> tuple[RawSolution, A
     form = half(agent_of(person, HumanPosture.MEASURED))
     load, height, push = rng.uniform(2.5, 10.0), rng.uniform(0.3, 1.4), rng.uniform(-5.0, 5.0)
     scene = Scene(replace(form.agent, name=ROBOT), form.agent, Payload(LARGE, 2.0 * load))
-    problem = HumanProblem(form, scene, 1.0, SolverOptions(compiled=False))
+    problem = PersonProblem(form, scene, 1.0, SolverOptions(compiled=False), SolverCache())
 
     def led(start: dict[str, Array]) -> RawSolution:
         return problem.solve(height, push, start)

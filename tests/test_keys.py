@@ -270,7 +270,7 @@ def test_where_bodies_are_kept_apart_pieces_follow_from_all_scenes_and_tasks() -
     )
     setting = replace(free, scenes=scenes, middle=scenes[0])
     fewer, sooner = replace(setting, scenes=scenes[:1]), replace(setting, tasks=setting.tasks[:1])
-    for subject in (Subject.PERSON, Subject.PERSON_REACH, Subject.HIGHEST, Subject.LOWEST, Subject.POSTURE):
+    for subject in (Subject.PERSON_REACH, Subject.HIGHEST, Subject.LOWEST, Subject.POSTURE):
         piece = Piece(subject, scenes[0].pair, Hold(height_m=1.0))
         assert len({key_of(each, piece) for each in (setting, fewer, sooner)}) == 3
         assert (

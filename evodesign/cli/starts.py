@@ -9,7 +9,7 @@ def starts(problem: ProblemPath, jobs: Jobs = CORES, json: Json = False) -> None
     """The starts from which a problem is solved, and how well they serve other designs."""
     from evodesign.cli.output import console, print_json
     from evodesign.cli.progress import precompute_progress
-    from evodesign.cli.tables.starts import starts_json, starts_tables
+    from evodesign.cli.tables.starts import starts_json, starts_table
     from evodesign.pool.registry import make_pool
     from evodesign.problem.build import build_problem
     from evodesign.problem.factory import cached_precomputed
@@ -21,5 +21,4 @@ def starts(problem: ProblemPath, jobs: Jobs = CORES, json: Json = False) -> None
     if json:
         print_json(starts_json(built, known))
         return
-    for table in starts_tables(built, known):
-        console().print(table)
+    console().print(starts_table(built, known))

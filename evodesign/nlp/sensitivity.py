@@ -101,18 +101,6 @@ class LimitTable(Sequence[Limit]):
     def __len__(self) -> int:
         return len(self.names)
 
-    def __add__(self, other: LimitTable) -> LimitTable:
-        return LimitTable(
-            self.names + other.names,
-            np.concatenate([self.active, other.active]),
-            np.concatenate([self.margins, other.margins]),
-            np.concatenate([self.slopes, other.slopes]),
-        )
-
-    def holds(self, name: str) -> bool:
-        """Whether a limit of a name is active."""
-        return any(one == name and active for one, active in zip(self.names, self.active, strict=True))
-
 
 def no_limits(parameters: int) -> LimitTable:
     """None at all, beside so many parameters."""
@@ -140,22 +128,16 @@ class Optimum:
     limits: LimitTable
     columns: Mapping[str, slice]
 
-    def along(self, parameter: str, change: Array | None = None) -> Optimum:
-        """The optimum as a function of one parameter, or of what that parameter follows.
-
-        Args:
-            parameter: its name; the others stay as they are.
-            change: derivative of the parameter with respect to what it follows, shape (its rows, columns).
-        """
+    def along(self, parameter: str) -> Optimum:
+        """The optimum as a function of one parameter; the others stay as they are."""
         own = self.columns[parameter]
-        chain = np.eye(own.stop - own.start) if change is None else change
         return Optimum(
             values=self.values,
-            slopes={name: slope[:, own] @ chain for name, slope in self.slopes.items()},
+            slopes={name: slope[:, own] for name, slope in self.slopes.items()},
             cost=self.cost,
-            cost_slope=self.cost_slope[own] @ chain,
-            limits=replace(self.limits, slopes=self.limits.slopes[:, own] @ chain),
-            columns={parameter: slice(0, chain.shape[1])},
+            cost_slope=self.cost_slope[own],
+            limits=replace(self.limits, slopes=self.limits.slopes[:, own]),
+            columns={parameter: slice(0, own.stop - own.start)},
         )
 
 

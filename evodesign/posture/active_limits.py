@@ -23,7 +23,7 @@ Source: Nocedal and Wright, Numerical Optimization, section 12.8 (multipliers as
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -151,15 +151,10 @@ class LimitSlopes:
         for number in holding:
             side = self._sides[number]
             slope = -float(multipliers[number] * moves[number]) / side.scale
-            merge(slopes, side.bound, float(values[number]), slope)
+            key = side.bound.agent, side.bound.name, side.bound.part, side.bound.at_most
+            before = slopes[key][2] if key in slopes else 0.0
+            slopes[key] = side.bound, float(values[number]), before + slope
         return slopes
-
-
-def merge(slopes: Slopes, bound: Bound, value: float, slope: float) -> None:
-    """Add what a bound costs to that of others of the same limit."""
-    key = bound.agent, bound.name, bound.part, bound.at_most
-    before = slopes[key][2] if key in slopes else 0.0
-    slopes[key] = bound, value, before + slope
 
 
 def _sides(
@@ -172,19 +167,15 @@ def _sides(
                 yield _Side(first + row, sign, bounds[row if len(bounds) > 1 else 0], scale)
 
 
-def priced(found: Sequence[Slopes], cost: float) -> tuple[ActiveLimit, ...]:
+def priced(found: Slopes, cost: float) -> tuple[ActiveLimit, ...]:
     """The limits that hold a posture, with the price of each; the most expensive first.
 
     Args:
-        found: of each program in which the posture was solved, by limit.
+        found: by limit.
         cost: the least cost, in the unit of the slopes: TORQUE_UNIT^2.
     """
-    together: Slopes = {}
-    for slopes in found:
-        for bound, value, slope in slopes.values():
-            merge(together, bound, value, slope)
     effort_slope = TORQUE_UNIT / (2.0 * math.sqrt(cost)) if cost > 0.0 else 0.0
-    limits = [_limit(bound, value, effort_slope * slope) for bound, value, slope in together.values()]
+    limits = [_limit(bound, value, effort_slope * slope) for bound, value, slope in found.values()]
     change: dict[tuple[str, str, bool], float] = {}
     for limit in limits:
         change[_shared(limit)] = change.get(_shared(limit), 0.0) + abs(limit.change_n_m)

@@ -39,15 +39,13 @@ class Candidate:
         attempt: how it ended; solved only if the check agrees.
         instants: its postures; none unless the solver succeeded.
         residuals: what the check found.
-        raw: the solve; the robot's, where the person's is another one.
-        person: the person's solve where it is another one.
+        raw: the solve.
     """
 
     attempt: Attempt
     instants: tuple[Instant, ...]
     residuals: tuple[Residual, ...]
     raw: RawSolution
-    person: RawSolution | None = None
 
     @property
     def solved(self) -> bool:
@@ -183,5 +181,4 @@ def case_solution(case: Case, trials: Sequence[Trial]) -> CaseSolution:
         attempts=attempts,
         attempt=best.attempt,
         raw=best.raw,
-        person=best.person,
     )

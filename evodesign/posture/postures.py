@@ -1,15 +1,14 @@
 """The posture of a design in a case: formulations in turn, until the check accepts a result.
 
 A scene that is its own mirror image is solved for symmetric postures: half the variables and far fewer local
-minima. Where the person's value function is known, robot and person are even solved one after the other. The
-whole program, started from the symmetric solution, is the polish, and the refuge when no symmetric posture is
-found. Solves begin at the problem's portfolio of starts (at two fixed ones where there is none), so that the
-result depends on problem and design alone.
+minima. The whole program, started from the symmetric solution, is the polish, and the refuge when no
+symmetric posture is found. Solves begin at the problem's portfolio of starts (at two fixed ones where there
+is none), so that the result depends on problem and design alone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from enum import StrEnum
 
@@ -20,8 +19,7 @@ from evodesign.nlp.program import Start
 from evodesign.nlp.solver import RawSolution, SolverCache
 from evodesign.posture.candidate import Trial, case_solution
 from evodesign.posture.check import Checker
-from evodesign.posture.formulations.base import Formulation, Setting
-from evodesign.posture.formulations.decoupled import DecoupledPostures
+from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.joint import JointPostures
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import CaseSolution, Neighbour
@@ -30,35 +28,8 @@ from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.records import ActiveLimit, Status
 from evodesign.tasks import Task, TaskRecord
 
-DECOUPLED, SYMMETRIC, WHOLE = "decoupled", "symmetric", "whole"
+SYMMETRIC, WHOLE = "symmetric", "whole"
 """Names of the formulations in results."""
-
-Maker = Callable[[str, Setting, Precomputed, SolverCache, type[TaskRecord]], Formulation]
-
-
-def _decoupled(
-    name: str, setting: Setting, known: Precomputed, solvers: SolverCache, kind: type[TaskRecord]
-) -> Formulation:
-    return DecoupledPostures(
-        name, symmetric_forms(setting.scene), setting, known.values_of(setting.scene), solvers
-    )
-
-
-def _symmetric(
-    name: str, setting: Setting, known: Precomputed, solvers: SolverCache, kind: type[TaskRecord]
-) -> Formulation:
-    return JointPostures(name, symmetric_forms(setting.scene), setting, solvers, kind)
-
-
-def _whole(
-    name: str, setting: Setting, known: Precomputed, solvers: SolverCache, kind: type[TaskRecord]
-) -> JointPostures:
-    forms = (whole(setting.scene.robot), whole(setting.scene.human))
-    people = [start for found in known.postures.values() for start in found.starts]
-    return JointPostures(name, forms, setting, solvers, kind, people)
-
-
-FORMULATIONS: Mapping[str, Maker] = {DECOUPLED: _decoupled, SYMMETRIC: _symmetric, WHOLE: _whole}
 
 
 class Symmetry(StrEnum):
@@ -76,7 +47,7 @@ class PostureProblem:
     Args:
         setting: of the scene.
         symmetry: which postures are looked for.
-        known: portfolios of starts, and the person's part at the heights where it is known.
+        known: portfolios of starts.
         solvers: of other scenes, which may have programs in common with this one.
     Raises:
         ModelError: symmetric postures of a scene that is not its own mirror image; it says what differs.
@@ -91,8 +62,7 @@ class PostureProblem:
     ) -> None:
         self._setting, self._symmetry, self._known = setting, symmetry, known
         self._solvers = solvers or SolverCache()
-        self._values = known.values_of(setting.scene)
-        self._made: dict[tuple[str, type[TaskRecord], MethodName], Formulation] = {}
+        self._made: dict[tuple[str, type[TaskRecord], MethodName], JointPostures] = {}
         if symmetry is not Symmetry.OFF:
             setting.space.check_mirror(setting.scene.robot.tree)
             symmetric_forms(setting.scene)
@@ -155,8 +125,7 @@ class PostureProblem:
         """The best posture of some trials, polished where the problem asks for it."""
         best, found = trials[-1].best, [*trials]
         if self._symmetry is Symmetry.POLISH and best is not None:
-            setting = self._solved_by(self._methods(WHOLE)[0], WHOLE)
-            whole = _whole(WHOLE, setting, self._known, self._solvers, type(task))
+            whole = self._formulation(WHOLE, task, self._methods(WHOLE)[0])
             found.append(whole.polish(design, task, best.instants, checker))
         return case_solution(self._setting.scene.case(task), found)
 
@@ -199,13 +168,13 @@ class PostureProblem:
 
         Args:
             task: of the problem.
-            checker_of: the check of a design, by which postures count where no bodies overlap; left out, or
-                where the person is not in the program, all count as they are.
+            checker_of: the check of a design, by which postures count where no bodies overlap; left out, all
+                count as they are.
         """
         name, _ = next(self._in_turn(task))
         formulation = self._formulation(name, task, self._methods(name)[0])
         found = formulation.landscape(task)
-        if checker_of is None or not isinstance(formulation, JointPostures):
+        if checker_of is None:
             return found
         return replace(
             found,
@@ -259,19 +228,22 @@ class PostureProblem:
             if portfolio:
                 yield WHOLE, ()
             return
-        if task in self._values:
-            yield DECOUPLED, portfolio
-            yield SYMMETRIC, ()
-        else:
-            yield SYMMETRIC, portfolio
+        yield SYMMETRIC, portfolio
         yield WHOLE, ()
 
-    def _formulation(self, name: str, task: Task, method: MethodName) -> Formulation:
+    def _formulation(self, name: str, task: Task, method: MethodName) -> JointPostures:
         key = (name, type(task), method)
         if key not in self._made:
-            setting = self._solved_by(method, name)
-            self._made[key] = FORMULATIONS[name](name, setting, self._known, self._solvers, type(task))
+            self._made[key] = self._joint(name, self._solved_by(method, name), type(task))
         return self._made[key]
+
+    def _joint(self, name: str, setting: Setting, kind: type[TaskRecord]) -> JointPostures:
+        """The program of a formulation; beside the best whole robot people of other starts are put, too."""
+        if name == SYMMETRIC:
+            return JointPostures(name, symmetric_forms(setting.scene), setting, self._solvers, kind)
+        forms = (whole(setting.scene.robot), whole(setting.scene.human))
+        people = [start for found in self._known.postures.values() for start in found.starts]
+        return JointPostures(name, forms, setting, self._solvers, kind, people)
 
     def _methods(self, name: str) -> tuple[MethodName, ...]:
         """Who solves a formulation, in turn: IPOPT is tried where the native method finds no posture.
@@ -283,11 +255,7 @@ class PostureProblem:
 
     def _is_refuge(self, name: str) -> bool:
         """Whether a formulation is solved only where another one failed."""
-        return {
-            DECOUPLED: False,
-            SYMMETRIC: bool(self._values),
-            WHOLE: self._symmetry is Symmetry.ON,
-        }[name]
+        return name == WHOLE and self._symmetry is Symmetry.ON
 
     def _solved_by(self, method: MethodName, name: str) -> Setting:
         """The setting of a formulation; what IPOPT seldom solves is not worth compiling."""

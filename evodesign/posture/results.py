@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,7 +70,7 @@ class Attempt:
 
     @property
     def name(self) -> str:
-        """Formulation and start, such as `decoupled: start 2`."""
+        """Formulation and start, such as `symmetric: start 2`."""
         return f"{self.formulation}: {self.start}"
 
 
@@ -91,10 +91,6 @@ class Instant:
     disturbed: Mapping[str, Mapping[str, AgentPosture]] = field(default_factory=dict)
     height: float | None = None
 
-    def with_postures(self, postures: Mapping[str, AgentPosture]) -> Instant:
-        """The same with some agents standing otherwise; it has no disturbances."""
-        return replace(self, postures={**self.postures, **postures})
-
 
 @dataclass(frozen=True, slots=True)
 class CaseSolution:
@@ -108,8 +104,7 @@ class CaseSolution:
         residuals: what the independent check found, by name (SI units); empty unless solved.
         attempts: every start tried, in order.
         attempt: that led to the postures; None unless solved.
-        raw: the solve that gave the instants; the robot's, where the person's is another one.
-        person: the person's solve where it is another one.
+        raw: the solve that gave the instants.
     """
 
     case: Case
@@ -120,7 +115,6 @@ class CaseSolution:
     attempts: tuple[Attempt, ...] = ()
     attempt: Attempt | None = None
     raw: RawSolution | None = None
-    person: RawSolution | None = None
 
     @property
     def solved(self) -> bool:
@@ -151,10 +145,8 @@ class Neighbour:
 
     Args:
         solution: solved; its person has the joints of the one sought.
-        same_load: whether only the person differs.
         unchecked: whether nothing differs, and the solution is to be checked.
     """
 
     solution: CaseSolution
-    same_load: bool
     unchecked: bool = False

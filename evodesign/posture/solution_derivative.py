@@ -38,7 +38,6 @@ class PostureDerivative:
         slopes: their derivatives with respect to the design's parameters, shape (rows, parameters).
         cost: the least cost of the posture problem.
         cost_slope: its derivative, one per parameter.
-        compared: the cost by which starts are compared: with V(X) where the person is solved after the robot.
         limits: every inequality, with slopes per parameter.
     """
 
@@ -50,7 +49,6 @@ class PostureDerivative:
     slopes: Mapping[str, Array]
     cost: float
     cost_slope: Array
-    compared: float
     limits: Sequence[Limit]
 
     def moved(self, step: Array) -> tuple[Instant, ...]:

@@ -13,9 +13,6 @@ from evodesign.nlp.solver import Solver
 from evodesign.posture.assemble import Slot
 from evodesign.posture.results import Array
 
-STARTS_BESIDE = 2
-"""Starts of the portfolio beside a neighbour's solution, which mostly leads to the best optimum by itself."""
-
 PEOPLE = 16
 """People of other starts who are put beside the best robot found so far (docs/benchmarks.md)."""
 

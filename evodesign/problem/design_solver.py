@@ -203,7 +203,7 @@ class _OneDesign:
             elif case not in lifts:
                 near = self._neighbour([*found.values()], case)
                 if earlier is not None:
-                    near = Neighbour(earlier, same_load=True, unchecked=True)
+                    near = Neighbour(earlier, unchecked=True)
                 found[case] = self._begun(values, case, reach, check, near)
         lost = False
         for begun in [*found.values()]:
@@ -248,14 +248,16 @@ class _OneDesign:
 
     def _neighbour(self, before: Sequence[CaseSolution], case: Case) -> Neighbour | None:
         """The most similar case of the same task that was solved before: of the same load if there is one."""
-        joints, best = self._problem.scene_of(case).human.joints, None
-        for solution in before:
-            other = self._problem.scene_of(solution.case)
-            if solution.solved and solution.case.task == case.task and other.human.joints == joints:
-                same_load = solution.case.payload == case.payload
-                if best is None or same_load >= best.same_load:
-                    best = Neighbour(solution, same_load)
-        return best
+        joints = self._problem.scene_of(case).human.joints
+        similar = [
+            solution
+            for solution in before
+            if solution.solved
+            and solution.case.task == case.task
+            and self._problem.scene_of(solution.case).human.joints == joints
+        ]
+        same_load = [solution for solution in similar if solution.case.payload == case.payload]
+        return Neighbour((same_load or similar)[-1]) if similar else None
 
     def _in_case(
         self,
@@ -332,7 +334,7 @@ class _OneDesign:
             and self._problem.scene_of(each.case).human.joints == joints
         ]
         others.sort(key=lambda each: abs(each.case.task.heights[0] - case.task.heights[0]))
-        return [Neighbour(each, same_load=False) for each in others]
+        return [Neighbour(each) for each in others]
 
     def _checker(self, values: Sequence[float], case: Case, check: Checker) -> Checker:
         """The check, in a case."""

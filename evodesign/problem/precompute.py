@@ -34,7 +34,6 @@ WORK: Mapping[Subject, float] = {
     Subject.HIGHEST: 0.6,
     Subject.LOWEST: 0.6,
     Subject.POSTURE: 1.7,
-    Subject.PERSON: 0.3,
     Subject.PERSON_REACH: 0.15,
     Subject.LIFT: 2.5,
 }
@@ -80,7 +79,7 @@ def precomputed(
 ) -> Precomputed:
     """What is known of a problem before any robot is evaluated.
 
-    That of people who were drawn from a distribution is that of the mean ones, but for their own part.
+    That of people who were drawn from a distribution is that of the mean ones.
 
     Args:
         problem: to be made ready.
@@ -92,28 +91,8 @@ def precomputed(
         RunError: a piece could not be worked out; it says which and why.
         InputError: a height at which one of the people cannot hold a load.
     """
-    setting, staged = precompute_setting(problem), staged_pieces(problem, lifts)
-    mean = all_mean_people(setting)
-    known = _all_of(problem, mean, Precomputed(), staged, cache, pool, watcher)
-    if mean == setting:
-        return known
-    own = [piece for stage in staged for piece in stage if piece.subject is Subject.PERSON]
-    return _all_of(problem, setting, replace(known, values={}), [own], cache, pool, watcher)
-
-
-def _all_of(
-    problem: DesignProblem,
-    setting: PrecomputeSetting,
-    known: Precomputed,
-    staged: Sequence[Sequence[Piece]],
-    cache: Cache | None,
-    pool: Pool,
-    watcher: PrecomputeProgress,
-) -> Precomputed:
-    """What is known with all of some pieces; stages in turn, other arguments as in `precomputed`.
-
-    `setting` is the problem's or that of mean people, and `known` is known already.
-    """
+    setting, staged = all_mean_people(precompute_setting(problem)), staged_pieces(problem, lifts)
+    known = Precomputed()
     pieces = {
         piece: PendingPiece(str(piece), piece.subject, WORK[piece.subject], stage)
         for stage, pieces in enumerate(staged)

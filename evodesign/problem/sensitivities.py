@@ -275,7 +275,7 @@ def _winner(solution: CaseSolution, derivative: CaseDerivative | NotDifferentiab
     if best is None or isinstance(derivative, NotDifferentiable):
         return won
     others = [a for a in solution.attempts if a.formulation == best.formulation and a.start != best.start]
-    behind = [a.cost / derivative.compared - 1.0 for a in others if a.status is Status.SOLVED]
+    behind = [a.cost / derivative.cost - 1.0 for a in others if a.status is Status.SOLVED]
     distinct = [share for share in behind if share > DISTINCT]
     if not others:
         return f"{won}, the only start"

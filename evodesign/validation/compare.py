@@ -17,7 +17,7 @@ from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import HUMAN, ROBOT, Payload, Scene
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.solver import SolverCache
-from evodesign.posture.formulations.human_value import HumanProblem
+from evodesign.posture.formulations.person import PersonProblem
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import Form, half
 from evodesign.posture.warm_start import instants_of, layout_of
@@ -85,7 +85,7 @@ class Holder:
         """How the person stands with a load [kg] in the palms at a height [m], ankles at x = 0."""
         agent = self._form.agent
         scene = Scene(replace(agent, name=ROBOT), agent, Payload(LARGE, 2.0 * load))
-        problem = HumanProblem(self._form, scene, 1.0, SolverOptions(compiled=False), self._solvers)
+        problem = PersonProblem(self._form, scene, 1.0, SolverOptions(compiled=False), self._solvers)
         raw = problem.best_of_many(palms - LARGE[2] / 2.0, 0.0)
         if raw is None:
             return None

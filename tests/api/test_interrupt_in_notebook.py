@@ -25,7 +25,7 @@ class ThisPython(KernelManager):
 
 @pytest.fixture
 def kernel(known: Precomputed) -> Iterator[tuple[ThisPython, BlockingKernelClient]]:
-    assert known.values, "worked out before, so that no search has to"
+    assert known.postures, "worked out before, so that no search has to"
     manager = ThisPython()
     manager.start_kernel()
     client = manager.blocking_client()

@@ -27,7 +27,7 @@ from evodesign.runlog.run import RunLog
 @pytest.fixture(scope="module")
 def opened(repository: Path, known: Precomputed) -> Problem:
     """The point-grasp problem, without compiling: that takes longer than it saves these tests."""
-    assert known.values, "worked out before, so that the problem finds it in the cache"
+    assert known.postures, "worked out before, so that the problem finds it in the cache"
     source = read_source(repository / "problems" / "point_grasp.toml")
     text = f"{source.text}\n[solver]\ncompile = false\n"
     return Problem(msgspec.structs.replace(source, text=text))

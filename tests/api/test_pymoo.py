@@ -223,7 +223,7 @@ def test_history_shares_the_problem() -> None:
 @pytest.fixture(scope="module")
 def opened(repository: Path, known: Precomputed) -> Problem:
     """The point-grasp problem, without compiling: that takes longer than it saves these tests."""
-    assert known.values, "worked out before, so that the problem finds it in the cache"
+    assert known.postures, "worked out before, so that the problem finds it in the cache"
     source = read_source(repository / "problems" / "point_grasp.toml")
     return Problem(msgspec.structs.replace(source, text=f"{source.text}\n[solver]\ncompile = false\n"))
 

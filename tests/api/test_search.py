@@ -40,7 +40,7 @@ def logged(run: Path) -> list[tuple[str, bytes]]:
 
 @pytest.fixture(scope="module", autouse=True)
 def prepared(known: Precomputed) -> None:
-    assert known.values, "worked out before, so that no search has to"
+    assert known.postures, "worked out before, so that no search has to"
 
 
 @pytest.fixture(scope="module")

@@ -233,7 +233,7 @@ def test_python_has_values_and_violations(run: RunLog) -> None:
 
 
 def test_a_problem_in_python_evaluates_its_constraints(light: DesignProblem, known: Precomputed) -> None:
-    assert known.values, "worked out before, so that the problem finds it in the cache"
+    assert known.postures, "worked out before, so that the problem finds it in the cache"
     opened = Problem(light.source)
     assert opened.constraints == light.constraints
     design = opened.evaluate({f"density.{part}": 2000.0 for part in ("thigh", "shank")})
@@ -246,7 +246,7 @@ def test_pymoo_and_optuna_get_a_column_for_each_constraint(
     light: DesignProblem, known: Precomputed, run: RunLog
 ) -> None:
     """They add up to what the search ranks by."""
-    assert known.values, "worked out before, so that the problem finds it in the cache"
+    assert known.postures, "worked out before, so that the problem finds it in the cache"
     opened = Problem(light.source)
     design = heavy(run).assessment
     out = as_pymoo_problem(opened).evaluate(

@@ -50,8 +50,7 @@ def cold(quick: Path) -> tuple[dict, str]:
 @pytest.mark.slow
 def test_cache_does_not_change_an_answer(quick: Path, cold: tuple[dict, str]) -> None:
     warm, second = evaluate(quick, {"EVODESIGN_CACHE": str(quick.parent / "cache")})
-    assert "ready 1/1: the person's part at 1 m" in cold[1]
-    assert "ready" not in second
+    assert "ready" not in cold[1] + second
     assert cold[0] == warm
 
 

@@ -96,7 +96,7 @@ MOMENTS = [
 def test_a_search_that_is_interrupted_says_whether_it_can_be_resumed(
     delays: Sequence[float], known: Precomputed, tmp_path: Path
 ) -> None:
-    assert known.values, "worked out before, so that a run begins within seconds"
+    assert known.postures, "worked out before, so that a run begins within seconds"
     run = tmp_path / "run"
     sizes = ["--population", "4", "--evaluations", "4000", "--jobs", "2"]
     check(interrupted(["search", "point-grasp", "--run", run, *sizes], delays), run)

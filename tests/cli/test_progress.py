@@ -21,7 +21,7 @@ from evodesign.problem.time_left import PendingPiece
 PIECES = [
     PendingPiece("starts of the highest load", "highest", 1.0, 0),
     PendingPiece("starts of the lowest load", "lowest", 1.0, 0),
-    PendingPiece("the person's part at 0.75 m, a tall person [1], a box with brush", "person", 0.3, 0),
+    PendingPiece("starts of postures at 0.75 m, a tall person [1], a box with brush", "person", 0.3, 0),
     PendingPiece("starts of postures at 0.75 m", "posture", 1.7, 1),
     PendingPiece("starts of postures at 1.25 m", "posture", 1.7, 1),
     PendingPiece("a lift", "lift", 0.1, 3),
@@ -71,5 +71,5 @@ def test_a_bar_of_80_columns_shows_all_of_it(clock: list[float], monkeypatch: py
     assert any(re.search(rf" 1/6 .* {LEFT}", line) for line in lines)
     assert not re.search(LEFT, lines[0])
     assert not re.search(LEFT, lines[-1])
-    assert "the person's part at 0.75 m, a tall person [1], a box with brush" in shown
+    assert "starts of postures at 0.75 m, a tall person [1], a box with brush" in shown
     assert shown.rstrip().endswith("a lift")

@@ -51,7 +51,7 @@ def whole(
     repository: Path, known: Precomputed, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Path, str, str]:
     """An uninterrupted run on two workers, with what it printed."""
-    assert known.values, "worked out before, so that no search has to"
+    assert known.postures, "worked out before, so that no search has to"
     run = tmp_path_factory.mktemp("runs") / "whole"
     done = finish(arguments(repository, run, "--jobs", "2"))
     return run, done.stdout, done.stderr

@@ -35,7 +35,7 @@ def run_example(name: str, folder: Path, *arguments: str) -> str:
 @pytest.fixture(scope="module")
 def first(known: Precomputed, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     """The folder in which the first search ran, and what it printed."""
-    assert known.values, "worked out before, so that the examples find it in the cache"
+    assert known.postures, "worked out before, so that the examples find it in the cache"
     folder = tmp_path_factory.mktemp("first")
     return folder, run_example("first_search.py", folder, "6")
 

@@ -22,9 +22,15 @@ from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.check import AgentModel
 from evodesign.posture.design_checkers import DesignCheckers
 from evodesign.posture.formulations.base import Setting
-from evodesign.posture.formulations.decoupled import robot_program
-from evodesign.posture.formulations.human_value import human_program
-from evodesign.posture.formulations.reach import HEIGHT, LEAST, LOWEST, ReachProblem, reach_program
+from evodesign.posture.formulations.person import person_program
+from evodesign.posture.formulations.reach import (
+    HEIGHT,
+    LEAST,
+    LOWEST,
+    ReachProblem,
+    reach_program,
+    robot_reach_program,
+)
 from evodesign.posture.parting import Parted
 from evodesign.posture.placed_shape import ROUNDING, SHAPE, PlacedShape, placed_shape
 from evodesign.posture.postures import Symmetry
@@ -205,7 +211,7 @@ def test_links_are_as_far_apart_as_in_the_world(apart: DesignProblem) -> None:
     assert human.collisions is not None
     rules = replace(human.collisions, parted=human.collisions.checked)
     form = symmetric_forms(replace(scene, human=replace(human, collisions=rules)))[1]
-    program = human_program(form, scene, 1.0, switched=True)
+    program = person_program(form, scene, 1.0, switched=True)
     assert isinstance(program.switches, Parted)
     (parted,) = program.switches._bodies
     middle = (ca.DM([0.0, 1.0, 0.0]), 0.0)
@@ -241,7 +247,7 @@ def test_links_are_as_far_apart_as_in_the_world(apart: DesignProblem) -> None:
 @pytest.mark.slow
 def test_derivatives_of_rows_are_differences_of_rows(met: dict, apart: DesignProblem) -> None:
     scene = with_meetings(apart.scene, met)
-    program = robot_program(symmetric_forms(scene)[0], replace(setting_of(apart), scene=scene))
+    program = robot_reach_program(symmetric_forms(scene)[0], replace(setting_of(apart), scene=scene))
     assert program.switches is not None
     full = program.switches.program
     names = {"robot.clear", "robot.clear_of_mirror_image"}

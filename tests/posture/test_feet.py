@@ -9,7 +9,7 @@ import pytest
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.check import AgentModel
 from evodesign.posture.formulations.base import Setting
-from evodesign.posture.formulations.decoupled import robot_program
+from evodesign.posture.formulations.reach import robot_reach_program
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.problem.build import DesignProblem
 
@@ -18,7 +18,7 @@ def test_a_foot_that_points_backwards_is_turned_by_half_a_circle(problem: Design
     """The row is the angle that pinocchio finds: a limit of its sine would let a foot point backwards."""
     form = symmetric_forms(problem.scene)[0]
     setting = Setting(problem.scene, problem.space, EffortWeights(1.0, 1.0), problem.options)
-    program = robot_program(form, setting)
+    program = robot_reach_program(form, setting)
     row = next(block for block in program.constraints if block.name.endswith("_foot_yaw"))
     turn = ca.Function("turn", [program.symbols, program.given], [row.expression])
     robot, agent = AgentModel.of(problem.scene.robot, problem.scene.robot.tree), problem.scene.robot

@@ -20,8 +20,8 @@ from evodesign.nlp.solver import SolverCache
 from evodesign.posture.assemble import CaseSymbols, Embodied, PostureMotion, assemble, free_hands_beside
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
-from evodesign.posture.formulations.human_value import HumanProblem
 from evodesign.posture.formulations.joint import JointPostures
+from evodesign.posture.formulations.person import PersonProblem
 from evodesign.posture.formulations.reach import HIGHEST, ReachProblem
 from evodesign.posture.measured_starts import mean_posture
 from evodesign.posture.postures import PostureProblem, Symmetry
@@ -224,7 +224,7 @@ def test_a_start_of_the_robot_alone_begins_beside_the_mean_person(
 
 def test_the_person_stands_as_measured_people_do(problem: DesignProblem, scene: Scene) -> None:
     """Bent below the hips, upright above; each of three starts leads there."""
-    person = HumanProblem(half(scene.human), scene, 1.0, problem.options)
+    person = PersonProblem(half(scene.human), scene, 1.0, problem.options, SolverCache())
     leans = {}
     for height in (0.5, 1.1):
         raw = person.best_of_many(height, 0.0)

@@ -10,7 +10,8 @@ from evodesign.errors import InputError
 from evodesign.human.anthropometry import Person
 from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
-from evodesign.posture.formulations.human_value import HumanProblem
+from evodesign.nlp.solver import SolverCache
+from evodesign.posture.formulations.person import PersonProblem
 from evodesign.posture.formulations.reach import person_reach
 from evodesign.posture.precompute.keys import key_of
 from evodesign.posture.precompute.pieces import compute_piece, with_piece
@@ -35,9 +36,10 @@ def reach(problem: DesignProblem) -> PersonReach:
 
 
 def holds(problem: DesignProblem, height: float) -> bool:
-    """Whether the person's own posture problem has a solution, from the starts of its value function."""
-    person = HumanProblem(symmetric_forms(problem.scene)[1], problem.scene, 1.0, problem.options)
-    return person.value(height) is not None
+    """Whether the person's own posture problem has a solution, from many starts."""
+    form, scene = symmetric_forms(problem.scene)[1], problem.scene
+    person = PersonProblem(form, scene, 1.0, problem.options, SolverCache())
+    return person.best_of_many(height, 0.0) is not None
 
 
 @pytest.mark.slow

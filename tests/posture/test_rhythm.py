@@ -14,8 +14,8 @@ from evodesign.motion.instant import KnotBlocks
 from evodesign.nlp.solver import Solver
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
-from evodesign.posture.formulations.human_value import human_program
 from evodesign.posture.formulations.joint import posture_program
+from evodesign.posture.formulations.person import person_program
 from evodesign.posture.starts import fixed_starts
 from evodesign.posture.symmetry import Form, half, symmetric_forms, whole
 from evodesign.posture.terms.floating_base import coordinate_ranges, joint_ranges
@@ -118,7 +118,7 @@ def test_the_cost_of_a_rhythm_moves_as_its_joints_together_do(problem: DesignPro
     slopes = []
     for each in (scene, free):
         form = half(each.human)
-        program = human_program(form, each, 1.0)
+        program = person_program(form, each, 1.0)
         values = {v.name: v.start for v in program.variables}
         coordinates = np.linspace(-0.2, 0.3, len(half(scene.human).coordinates))
         values["human.joints"] = coordinates if form.rhythms else half(scene.human).positions(coordinates)

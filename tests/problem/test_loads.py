@@ -13,7 +13,7 @@ from evodesign.mechanics.disturbance import Disturbance, OverCases, PushedAt
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.postures import Symmetry
 from evodesign.posture.precompute.keys import key_of
-from evodesign.posture.precompute.plan import Subject, stages
+from evodesign.posture.precompute.plan import stages
 from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.design_result import DesignResult
@@ -198,15 +198,7 @@ def test_gradients_are_differences_of_disturbed_evaluations(
             assert gradient[parameter.name] == pytest.approx(slope, rel=1e-4, abs=1e-6)
 
 
-def test_the_persons_part_is_not_worked_out_where_postures_are_shaken(
-    problem: DesignProblem, shaken: DesignProblem
-) -> None:
-    subjects = {
-        piece.subject
-        for stage in stages(precompute_setting(shaken), shaken.tasks, portfolios=True, person_reaches=False)
-        for piece in stage
-    }
-    assert Subject.PERSON not in subjects
+def test_pieces_follow_from_how_postures_are_shaken(problem: DesignProblem, shaken: DesignProblem) -> None:
     undisturbed = replace(shaken, scenes=(replace(shaken.scene, disturbances=problem.scene.disturbances),))
     for stage in stages(precompute_setting(shaken), shaken.tasks, portfolios=True, person_reaches=False):
         for piece in stage:

@@ -16,8 +16,8 @@ from evodesign.human.coupled_joints import coupled_joints, rhythms
 from evodesign.mechanics.scene import Grasp, GraspDirection
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.codesign import JointProblem
-from evodesign.posture.formulations.human_value import human_program
 from evodesign.posture.formulations.joint import posture_program
+from evodesign.posture.formulations.person import person_program
 from evodesign.posture.formulations.reach import robot_reach_program
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.posture.terms.registry import TERMS
@@ -51,7 +51,7 @@ def expressions(problem: DesignProblem) -> list[str]:
         posture_program(forms, setting),
         posture_program((whole(problem.scene.robot), whole(problem.scene.human)), setting),
         robot_reach_program(forms[0], setting),
-        human_program(forms[1], problem.scene, 1.0),
+        person_program(forms[1], problem.scene, 1.0),
     ]
     if not problem.scene.disturbances:
         programs.append(JointProblem(problem.scene, problem.space, problem.tasks, problem.joint).program)

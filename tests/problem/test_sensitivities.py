@@ -132,7 +132,7 @@ def test_closed_forms_of_the_design_have_casadis_derivatives(
 def test_cost_of_robot_and_person_has_the_gradient_of_their_costs(
     derivative: DesignDerivative, wide: DesignProblem, known: Precomputed
 ) -> None:
-    """Robot and person are solved in turn; their summed cost is differenced along one direction."""
+    """The posture problem's cost is differenced along one direction."""
     tight = Evaluator(replace(wide, options=replace(wide.options, tolerance=1e-12)), known)
     ranges = np.array([parameter.upper - parameter.lower for parameter in wide.space.parameters])
     along = ranges * np.random.default_rng(2).standard_normal(len(ranges))
@@ -148,6 +148,6 @@ def test_cost_of_robot_and_person_has_the_gradient_of_their_costs(
 def test_notes_name_the_start_that_won(found: Mapping[str, ObjectiveSensitivity]) -> None:
     for name in ("robot_torque", "worst_human_torque"):
         for height in ("0.8", "1", "1.2"):
-            assert any(note.startswith(f"at {height} m: decoupled: start ") for note in found[name].notes)
+            assert any(note.startswith(f"at {height} m: symmetric: start ") for note in found[name].notes)
     assert any(note.startswith("highest load: start ") for note in found["reach_height"].notes)
     assert found["mass"].notes == ()

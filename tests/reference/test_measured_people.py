@@ -27,8 +27,9 @@ from evodesign.mechanics.contact import SoleSize
 from evodesign.mechanics.floating_base import ROOT, BodyState, Configuration, FloatingBody
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Payload, Scene
 from evodesign.nlp.method import SolverOptions
+from evodesign.nlp.solver import SolverCache
 from evodesign.posture.check import AgentModel
-from evodesign.posture.formulations.human_value import HumanProblem
+from evodesign.posture.formulations.person import PersonProblem
 from evodesign.posture.symmetry import half
 from evodesign.posture.warm_start import instants_of, layout_of
 from tests.human.test_measured_posture import MEASURED, box_lifts, features_of, rows_without
@@ -77,7 +78,7 @@ def predicted(row: Mapping[str, str]) -> Compared:
         measured=given,
     )
     form, scene = half(agent), Scene(replace(agent, name=ROBOT), agent, BOX)
-    person = HumanProblem(form, scene, 1.0, SolverOptions(compiled=False))
+    person = PersonProblem(form, scene, 1.0, SolverOptions(compiled=False), SolverCache())
     raw = person.best_of_many(features["eta"] * stature - BOX.size[2] / 2.0, 0.0)
     assert raw is not None
     (instant,) = instants_of(layout_of(person.program, HUMAN), (form,), scene, raw.values)

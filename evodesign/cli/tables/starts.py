@@ -5,20 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from rich.markup import escape
-
 from evodesign.cli.output import rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.nlp.start_portfolio import StartPortfolio
-from evodesign.posture.formulations.human_value import COST_UNIT
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Case
-
-
-def starts_tables(problem: DesignProblem, known: Precomputed) -> tuple[FittedTable, FittedTable]:
-    """Coverage of each portfolio of starts, and errors of each value function of the person."""
-    return _starts_table(problem, known), _people_table(problem, known)
 
 
 def _portfolios(problem: DesignProblem, known: Precomputed) -> Iterator[tuple[str, StartPortfolio, str]]:
@@ -37,7 +29,8 @@ def _named(subject: str, case: Case) -> str:
     return ", ".join(part for part in (subject, case.label) if part)
 
 
-def _starts_table(problem: DesignProblem, known: Precomputed) -> FittedTable:
+def starts_table(problem: DesignProblem, known: Precomputed) -> FittedTable:
+    """Coverage of each portfolio of starts."""
     columns = [*names("problem"), *numbers("starts", "designs tried", "within 1 %", "worst miss")]
     table = titled("start portfolios, and designs that they were not made from", columns)
     for name, found, unit in _portfolios(problem, known):
@@ -46,23 +39,6 @@ def _starts_table(problem: DesignProblem, known: Precomputed) -> FittedTable:
         miss = f"{rounded(coverage.worst)} {unit}" if coverage.good < coverage.designs else "none"
         table.add_row(name, str(len(found.starts)), str(coverage.designs), share, miss)
     return table
-
-
-def _people_table(problem: DesignProblem, known: Precomputed) -> FittedTable:
-    several = len(problem.scenes) > 1
-    columns = [*names(*["person and load"][:several]), *numbers("height", "known", "largest error")]
-    table = titled("the person's part V(X), X the internal force", columns, keys=1 + several)
-    for case, error in _errors(problem, known):
-        shown = "-" if error is None else f"{rounded(error)} N^2 m^2"
-        row = (str(case.task), "no: solved jointly" if error is None else "yes", shown)
-        table.add_row(*([escape(case.label)] if several else []), *row)
-    return table
-
-
-def _errors(problem: DesignProblem, known: Precomputed) -> Iterator[tuple[Case, float | None]]:
-    """Each case with the error of its value function [N^2 m^2], if it has one."""
-    for case in (scene.case(hold) for scene in problem.scenes for hold in problem.holds):
-        yield case, known.values[case].error * COST_UNIT if case in known.values else None
 
 
 def starts_json(problem: DesignProblem, known: Precomputed) -> dict[str, Any]:
@@ -79,14 +55,5 @@ def starts_json(problem: DesignProblem, known: Precomputed) -> dict[str, Any]:
                 "unit": unit,
             }
             for name, found, unit in _portfolios(problem, known)
-        ],
-        "human_values": [
-            {
-                **({"scene": case.label} if case.label else {}),
-                "height_m": case.task.heights[0],
-                "known": error is not None,
-                "error_n2_m2": error,
-            }
-            for case, error in _errors(problem, known)
         ],
     }

@@ -242,7 +242,6 @@ class JointPostures:
             slopes=own.slopes,
             cost=own.cost,
             cost_slope=own.cost_slope,
-            compared=own.cost,
             limits=own.limits,
         )
         return found_again(derivative, solution)
@@ -252,7 +251,7 @@ class JointPostures:
         if solution.raw is None:
             return ()
         parameters = {"design": design, **self._beside(solution.case.task)}
-        return priced([self._limit_slopes.of(parameters, solution.raw)], solution.raw.cost)
+        return priced(self._limit_slopes.of(parameters, solution.raw), solution.raw.cost)
 
     def _instants(self, raw: RawSolution, task: Task) -> tuple[Instant, ...]:
         layout, scene = layout_of(self._solver.program), self._setting.scene

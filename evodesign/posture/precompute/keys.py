@@ -71,7 +71,6 @@ lift follow from the starts of holds, which do so too."""
 
 NO_PART_OF: Mapping[Subject, Exceptions] = {
     Subject.MEETINGS: NO_PART_OF_MEETINGS,
-    Subject.PERSON: NO_PART_OF_A_PERSONS,
     Subject.PERSON_REACH: NO_PART_OF_A_PERSONS,
     Subject.DESIGNS: NO_PART_OF_DESIGNS,
     Subject.HIGHEST: NO_PART_OF_PIECES,

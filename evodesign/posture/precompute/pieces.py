@@ -23,7 +23,6 @@ from evodesign.nlp.solver import BRIEF, SolverCache
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.nlp.start_training import USUAL, start_portfolio
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
-from evodesign.posture.formulations.human_value import HumanProblem, HumanValue
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
 from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.meetings import REACH, found_meetings, with_meetings
@@ -33,8 +32,7 @@ from evodesign.posture.precompute.plan import (
     Subject,
 )
 from evodesign.posture.precompute.precomputed import HeldLoads, PersonReach, Precomputed
-from evodesign.posture.symmetry import symmetric_forms
-from evodesign.records import Case, Hold, Status, Task
+from evodesign.records import Case, Hold, Status
 
 LEARNED_FROM, LOOKED_AT = 96, 8
 """Designs whose reach is asked for, at most, to learn from those that hold a load; and how many times as many
@@ -56,7 +54,7 @@ def compute_piece(
         solvers: of other pieces.
     """
     solvers = solvers or SolverCache()
-    found: HumanValue | PersonReach | StartPortfolio | list[HeldLoads] | None
+    found: PersonReach | StartPortfolio | list[HeldLoads] | None
     scene = scene_of(setting.scenes, piece.pair)
     if piece.subject is Subject.MEETINGS:
         own = setting.of(scene)
@@ -70,9 +68,7 @@ def compute_piece(
     scenes = tuple(with_meetings(scene, known.meetings) for scene in setting.scenes)
     setting = replace(setting, scenes=scenes, middle=with_meetings(setting.middle, known.meetings))
     scene = scene_of(setting.scenes, piece.pair)
-    if piece.subject is Subject.PERSON and piece.task is not None:
-        found = _person(setting, scene, piece.task)
-    elif piece.subject is Subject.PERSON_REACH:
+    if piece.subject is Subject.PERSON_REACH:
         found = person_reach(scene, setting.options, symmetric=setting.symmetric)
     elif piece.subject is Subject.DESIGNS:
         found = _designs(setting, scene, solvers)
@@ -81,7 +77,7 @@ def compute_piece(
     return encoded_piece(found)
 
 
-def encoded_piece(content: HumanValue | PersonReach | StartPortfolio | list[HeldLoads] | None) -> bytes:
+def encoded_piece(content: PersonReach | StartPortfolio | list[HeldLoads] | None) -> bytes:
     """A piece's content, as it is kept."""
     return msgspec.json.encode(content, enc_hook=np.ndarray.tolist)
 
@@ -89,11 +85,6 @@ def encoded_piece(content: HumanValue | PersonReach | StartPortfolio | list[Held
 def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed | None:
     """What is known with one more piece; None when its content cannot be read."""
     try:
-        if piece.subject is Subject.PERSON and piece.task is not None:
-            value = msgspec.json.decode(content, type=HumanValue | None)
-            person, payload = piece.pair
-            case = Case(person=person, payload=payload, task=piece.task)
-            return replace(known, values={**known.values, case: value}) if value else known
         if piece.subject is Subject.MEETINGS:
             return _with_found(known, piece, msgspec.json.decode(content, type=dict[str, list[BodyPair]]))
         if piece.subject is Subject.PERSON_REACH:
@@ -122,11 +113,6 @@ def _with_found(known: Precomputed, piece: Piece, found: Mapping[str, Sequence[B
     for key, pairs in own.items():
         meetings[key] = tuple(dict.fromkeys([*meetings.get(key, ()), *pairs]))
     return replace(known, meetings=meetings)
-
-
-def _person(setting: PrecomputeSetting, scene: Scene, task: Task) -> HumanValue | None:
-    form = symmetric_forms(scene)[1]
-    return HumanProblem(form, scene, setting.weights.human, setting.options).value(task.heights[0])
 
 
 def _designs(setting: PrecomputeSetting, scene: Scene, solvers: SolverCache) -> list[HeldLoads]:
@@ -176,8 +162,5 @@ def _portfolio(
         ends = (middle.solve(design, start) for start in middle.universal)
         return next((end.values for end in ends if end.status is Status.SOLVED), None)
 
-    drawn = scene.human.measured is not None
-    training = (
-        replace(USUAL, random=0) if drawn else USUAL
-    )  # where all random starts end, if anywhere: as others
+    training = USUAL if scene.human.measured is None else BESIDE_MEASURED
     return start_portfolio(problem.landscape(task, checker_of), designs, training, in_the_middle)

@@ -8,7 +8,7 @@ from enum import StrEnum
 
 from evodesign.design.space import DesignSpace
 from evodesign.human.measured_posture import MEAN_PERSON
-from evodesign.mechanics.scene import Grasp, Scene
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.method import SolverOptions
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.base import Setting
@@ -20,7 +20,6 @@ class Subject(StrEnum):
     """What a piece is about; the value is how it is told."""
 
     MEETINGS = "bodies that come near each other"
-    PERSON = "the person's part"
     PERSON_REACH = "the person's reach"
     DESIGNS = "designs to learn from"
     HIGHEST = "starts of the highest load"
@@ -29,7 +28,7 @@ class Subject(StrEnum):
     LIFT = "starts of lifts"
 
 
-OF_PEOPLE = (Subject.PERSON, Subject.PERSON_REACH, Subject.POSTURE, Subject.LIFT)
+OF_PEOPLE = (Subject.PERSON_REACH, Subject.POSTURE, Subject.LIFT)
 """Of one person with one load; other pieces serve everyone."""
 
 OF_STARTS = (Subject.HIGHEST, Subject.LOWEST, Subject.POSTURE)
@@ -106,17 +105,10 @@ def stages(
     parting = [scene for scene in setting.scenes if scene.robot.collisions is not None]
     meetings = [Piece(Subject.MEETINGS, scene.pair) for scene in parting]
     people = [Piece(Subject.PERSON_REACH, scene.pair) for scene in setting.scenes if person_reaches]
-    people += [
-        Piece(Subject.PERSON, scene.pair, task)
-        for scene in setting.scenes
-        for task in tasks
-        if setting.symmetric and _push_alone(scene, setting.space) and isinstance(task, Hold)
-    ]
     if not portfolios:
         return [meetings, people]
     middle = setting.middle.pair
-    apart = setting.symmetric and (parting or setting.middle.disturbances)
-    own = [scene.pair for scene in setting.scenes] if apart else [middle]
+    own = [scene.pair for scene in setting.scenes] if setting.symmetric else [middle]
     around = (min(task.height_m for task in tasks) + max(task.height_m for task in tasks)) / 2.0
     longest = sorted(tasks, key=lambda task: -abs(task.height_m - around))  # extreme heights take longest
     starts = [Piece(Subject.POSTURE, pair, task) for task in longest for pair in own]
@@ -130,13 +122,6 @@ def lift_pieces(setting: PrecomputeSetting, lifts: Sequence[Lift]) -> list[Piece
     """Starts of lifts, of every person with every load; they serve any number of knots."""
     coarse = dict.fromkeys(lift.coarse for lift in lifts)
     return [Piece(Subject.LIFT, scene.pair, lift) for scene in setting.scenes for lift in coarse]
-
-
-def _push_alone(scene: Scene, space: DesignSpace) -> bool:
-    """Whether the push is all that the load passes on, and no design weighs the person's effort anew."""
-    shared = scene.robot_share is not None or space.allocation_names
-    alone = scene.payload.grasp is Grasp.POINT and scene.stance.push > 0.0
-    return alone and not shared and not scene.disturbances
 
 
 def all_mean_people(setting: PrecomputeSetting) -> PrecomputeSetting:

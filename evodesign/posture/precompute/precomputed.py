@@ -1,4 +1,4 @@
-"""What is known of a problem before any robot is evaluated: the person's part, and starts.
+"""What is known of a problem before any robot is evaluated: the people's reach, bodies that meet, and starts.
 
 It follows from the problem alone and consists of plain numbers: so it travels to workers, and its parts are
 kept as JSON, as they are.
@@ -12,11 +12,9 @@ from dataclasses import dataclass, field
 import msgspec
 
 from evodesign.collision.rules import BodyPair
-from evodesign.mechanics.scene import Scene
 from evodesign.nlp.landscape import Design
 from evodesign.nlp.program import Start
 from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
-from evodesign.posture.formulations.human_value import HumanValue
 from evodesign.records import Case, Lift, Task
 
 NO_STARTS = StartPortfolio((), Coverage(0, 0, 0.0))
@@ -43,13 +41,12 @@ class PersonReach(msgspec.Struct, frozen=True, forbid_unknown_fields=True, renam
 
 @dataclass(frozen=True, slots=True)
 class Precomputed:
-    """What is known; left out, everything is solved jointly and from fixed starts.
+    """What is known; left out, everything is solved from fixed starts.
 
     A portfolio serves every scene: starting values hardly depend on who holds what. Where some do better in
     one scene than in another, they are chosen for each.
 
     Args:
-        values: the people's value functions, for the cases that have one.
         designs: from which starts are learned, with the lowest and highest load that each holds [m].
         highest, lowest: starts of the reach problem.
         postures: starts of the posture problem, by the case that they were found in.
@@ -58,7 +55,6 @@ class Precomputed:
         lifts: starts of lifts, by case.
     """
 
-    values: Mapping[Case, HumanValue] = field(default_factory=dict)
     designs: tuple[HeldLoads, ...] = ()
     highest: StartPortfolio = NO_STARTS
     lowest: StartPortfolio = NO_STARTS
@@ -66,10 +62,6 @@ class Precomputed:
     person_reaches: Mapping[tuple[str, str], PersonReach] = field(default_factory=dict)
     meetings: Mapping[tuple[str, str], tuple[BodyPair, ...]] = field(default_factory=dict)
     lifts: Mapping[Case, StartPortfolio] = field(default_factory=dict)
-
-    def values_of(self, scene: Scene) -> Mapping[Task, HumanValue]:
-        """The value functions of a scene's person and load, by task."""
-        return {case.task: value for case, value in self.values.items() if case.pair == scene.pair}
 
     def starts(self, pair: tuple[str, str], task: Task) -> tuple[Start, ...]:
         """The posture problem's starts for a person, a load and a task; none where none are known."""
