@@ -1,10 +1,10 @@
 """What one design costs.
 
 Medians per solve on one core, with compiled functions and on CasADi's virtual machine: reach from the
-problem's starts, both agents symmetrically and whole from their fixed starts. Then whole evaluations: designs per second and core, the share of
-the time spent outside IPOPT, two workers against one, and the paper's own formulation of the same posture
-problem. Processor time is given beside wall time, since a machine may be shared. Results go to
-benchmarks/results/inner_speed.json and are printed as Markdown tables.
+problem's starts, both agents symmetrically and whole from their fixed starts. Then whole evaluations: designs
+per second and core, the share of the time spent outside IPOPT, two workers against one, and the paper's own
+formulation of the same posture problem. Processor time is given beside wall time, since a machine may be
+shared. Results go to benchmarks/results/inner_speed.json and are printed as Markdown tables.
 
     python -m benchmarks.inner_speed [--designs 40] [--evaluations 96] [--paper 3]
 """

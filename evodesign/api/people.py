@@ -22,9 +22,9 @@ from evodesign.pool.base import Pool
 from evodesign.pool.dispatch import run_stoppable
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.designs import alike
+from evodesign.problem.progress import in_words
 from evodesign.problem.sampled_designs import SampledFactory, sampled_factory
 from evodesign.problem.samples import refuse_unsampled
-from evodesign.problem.time_left import in_words
 from evodesign.records import SampledDesign, SampledPeople
 from evodesign.runlog.directory import locked
 from evodesign.runlog.header import version_differences, versions

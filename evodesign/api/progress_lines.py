@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Sequence
 from typing import TextIO
 
 from evodesign.analysis.failures import causes, failures
 from evodesign.analysis.growth import growth
 from evodesign.errors import on_one_line
 from evodesign.problem.progress import PrecomputeProgress
-from evodesign.problem.time_left import PendingPiece, TimeLeft, in_words
 from evodesign.records import Evaluation, Generation, RunHeader, Status
 from evodesign.runlog.session_log import Observer
 
@@ -62,29 +60,24 @@ class SearchLines(Observer):
 
 
 class PrecomputeLines(PrecomputeProgress):
-    """One line for each piece, with the time left as far as it can be told."""
+    """One line for each piece."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
         self._began = time.monotonic()
         self._pieces = self._done = 0
-        self._left = TimeLeft()
 
-    def missing(self, pieces: Sequence[PendingPiece], processes: int) -> None:
+    def missing(self, pieces: int) -> None:
         """Say what begins."""
         if not self._pieces:
             _write(self._stream, "making the problem ready, once; the next time it is read from the cache")
-        self._pieces += len(pieces)
-        self._left = self._left.with_missing(pieces, processes, time.monotonic())
+        self._pieces += pieces
 
-    def done(self, piece: PendingPiece, seconds: float) -> None:
+    def done(self, piece: str) -> None:
         """Say what is done."""
         self._done += 1
-        now = time.monotonic()
-        self._left = self._left.with_done(piece, seconds, now)
-        left = in_words(self._left.seconds(now)) if self._done < self._pieces else ""
-        times = f"{now - self._began:.0f} s, {left}" if left else f"{now - self._began:.0f} s"
-        _write(self._stream, f"ready {self._done}/{self._pieces}: {piece.name} ({times})")
+        passed = time.monotonic() - self._began
+        _write(self._stream, f"ready {self._done}/{self._pieces}: {piece} ({passed:.0f} s)")
 
     def note(self, sentence: str) -> None:
         """Say it."""

@@ -6,7 +6,6 @@ On a terminal something is redrawn in place; elsewhere there is a plain line per
 from __future__ import annotations
 
 import sys
-import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -18,21 +17,17 @@ from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
     Progress,
-    ProgressColumn,
-    Task,
     TextColumn,
     TimeElapsedColumn,
     TimeRemainingColumn,
 )
 from rich.table import Table
-from rich.text import Text
 
 from evodesign.analysis.failures import causes, failures
 from evodesign.analysis.growth import growth
 from evodesign.api.progress_lines import PrecomputeLines, SearchLines
 from evodesign.cli.output import console, heading, rounded, show_notes
 from evodesign.problem.progress import PrecomputeProgress
-from evodesign.problem.time_left import PendingPiece, TimeLeft, in_words
 from evodesign.records import Evaluation, Generation, Objective, RunHeader, Sense, Status
 from evodesign.runlog.session_log import Observer
 
@@ -169,16 +164,14 @@ class _Tally:
 
 
 class PrecomputeBar(PrecomputeProgress):
-    """A bar over all pieces with the time left, and below it the piece that was done last."""
+    """A bar over all pieces, and below it the piece that was done last."""
 
     def __init__(self) -> None:
-        self._left = TimeLeft()
         self._progress = Progress(
             TextColumn("[bold]making ready, once"),
             BarColumn(bar_width=None),
             MofNCompleteColumn(),
             TimeElapsedColumn(),
-            _LeftColumn(lambda: self._left),
             console=console(stderr=True),
             expand=True,
         )
@@ -186,19 +179,17 @@ class PrecomputeBar(PrecomputeProgress):
         self._task = self._progress.add_task("", total=0)
         self._pieces = 0
 
-    def missing(self, pieces: Sequence[PendingPiece], processes: int) -> None:
+    def missing(self, pieces: int) -> None:
         """Draw the bar, longer by so many pieces."""
-        self._pieces += len(pieces)
-        self._left = self._left.with_missing(pieces, processes, time.monotonic())
+        self._pieces += pieces
         self._progress.update(self._task, total=self._pieces)
         self._live.start()
         self._live.update(self._progress, refresh=True)
 
-    def done(self, piece: PendingPiece, seconds: float) -> None:
+    def done(self, piece: str) -> None:
         """Move the bar."""
-        self._left = self._left.with_done(piece, seconds, time.monotonic())
         self._progress.update(self._task, advance=1)
-        self._live.update(Group(self._progress, escape(piece.name)), refresh=True)
+        self._live.update(Group(self._progress, escape(piece)), refresh=True)
 
     def note(self, sentence: str) -> None:
         """Say it."""
@@ -207,15 +198,3 @@ class PrecomputeBar(PrecomputeProgress):
     def close(self) -> None:
         """Give the terminal back."""
         self._live.stop()
-
-
-class _LeftColumn(ProgressColumn):
-    """The time left, from what is known at the moment at which it is drawn."""
-
-    def __init__(self, known: Callable[[], TimeLeft]) -> None:
-        super().__init__()
-        self._known = known
-
-    def render(self, task: Task) -> Text:
-        """In words; empty while there is no ground for a forecast, and when all is done."""
-        return Text("" if task.finished else in_words(self._known().seconds(time.monotonic())))

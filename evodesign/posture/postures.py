@@ -63,6 +63,7 @@ class PostureProblem:
         self._setting, self._symmetry, self._known = setting, symmetry, known
         self._solvers = solvers or SolverCache()
         self._made: dict[tuple[str, type[TaskRecord], MethodName], JointPostures] = {}
+        self._latest: dict[tuple[JointPostures, Task], tuple[object, Trial]] = {}
         if symmetry is not Symmetry.OFF:
             setting.space.check_mirror(setting.scene.robot.tree)
             symmetric_forms(setting.scene)
@@ -208,7 +209,7 @@ class PostureProblem:
                         yield formulation.solve_beside(design, task, portfolio, neighbour, checker)
                     elif (raw := _raw_of(neighbour.solution, name)) is not None:
                         yield formulation.finished(design, task, raw, checker)
-                trial = formulation.solve(design, task, portfolio, checker)
+                trial = self._from_portfolio(formulation, design, task, portfolio, checker)
                 yield trial
                 if trial.overlaps:
                     break
@@ -219,6 +220,21 @@ class PostureProblem:
                         yield formulation.solve(design, task, starts, checker)
                 if all(each.status is Status.INFEASIBLE for each in trial.attempts):
                     break
+
+    def _from_portfolio(
+        self,
+        formulation: JointPostures,
+        design: Sequence[float],
+        task: Task,
+        portfolio: Sequence[Start],
+        checker: Checker,
+    ) -> Trial:
+        """What a portfolio leads to; that of the latest design is at hand."""
+        of, found = (tuple(design), type(checker)), self._latest.get((formulation, task))
+        if found is None or found[0] != of:
+            found = of, formulation.solve(design, task, portfolio, checker)
+            self._latest[formulation, task] = found
+        return found[1]
 
     def _in_turn(self, task: Task) -> Iterator[tuple[str, tuple[Start, ...]]]:
         """The formulations to be tried until one succeeds, with their starts; a refuge has none."""

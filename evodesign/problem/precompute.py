@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 from evodesign.errors import InputError, RunError
@@ -25,19 +25,7 @@ from evodesign.posture.precompute.plan import (
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.progress import PrecomputeProgress
-from evodesign.problem.time_left import PendingPiece
 from evodesign.records import Lift
-
-WORK: Mapping[Subject, float] = {
-    Subject.MEETINGS: 0.5,
-    Subject.DESIGNS: 0.6,
-    Subject.HIGHEST: 0.6,
-    Subject.LOWEST: 0.6,
-    Subject.POSTURE: 1.7,
-    Subject.PERSON_REACH: 0.15,
-    Subject.LIFT: 2.5,
-}
-"""How much work a piece is, by its subject: medians of public robots. It serves until one of them is done."""
 
 
 def precompute_setting(problem: DesignProblem) -> PrecomputeSetting:
@@ -93,34 +81,29 @@ def precomputed(
     """
     setting, staged = all_mean_people(precompute_setting(problem)), staged_pieces(problem, lifts)
     known = Precomputed()
-    pieces = {
-        piece: PendingPiece(str(piece), piece.subject, WORK[piece.subject], stage)
-        for stage, pieces in enumerate(staged)
-        for piece in pieces
-    }
 
     def content_of(piece: Piece) -> bytes | None:
         return cache.read(key_of(setting, piece)) if cache else None
 
-    absent = [piece for piece in pieces if content_of(piece) is None]
+    absent = [piece for stage in staged for piece in stage if content_of(piece) is None]
     if absent:
-        watcher.missing([pieces[piece] for piece in absent], pool.processes)
+        watcher.missing(len(absent))
         behind = optimiser(os.environ) if problem.options.compiled else None
         if behind and any(piece.subject in OF_STARTS for piece in absent):
             watcher.note(f"all solves begin on TinyCC's code; {behind} optimises behind them what takes long")
     for stage in staged:
-        missing = {}
+        missing = []
         for piece in stage:
             content = content_of(piece)
             found = with_piece(known, piece, content) if content else None
             if found is None:
-                missing[piece] = pieces[piece]
+                missing.append(piece)
             else:
                 known = found
         if missing:
-            spoilt = [told for piece, told in missing.items() if piece not in absent]
+            spoilt = [piece for piece in missing if piece not in absent]
             if spoilt:
-                watcher.missing(spoilt, pool.processes)
+                watcher.missing(len(spoilt))
             for piece, content in _worked_out(problem, setting, missing, known, pool, watcher).items():
                 if cache is not None:
                     cache.store(key_of(setting, piece), content)
@@ -155,23 +138,22 @@ def refuse_heights(problem: DesignProblem, known: Precomputed) -> None:
 def _worked_out(
     problem: DesignProblem,
     setting: PrecomputeSetting,
-    missing: Mapping[Piece, PendingPiece],
+    missing: Sequence[Piece],
     known: Precomputed,
     pool: Pool,
     watcher: PrecomputeProgress,
 ) -> dict[Piece, bytes]:
     """Contents of the pieces, in the order in which they are missing."""
     contents: dict[Piece, bytes] = {}
-    pieces = [*missing]
-    name = " ".join(key_of(setting, piece) for piece in pieces)
+    name = " ".join(key_of(setting, piece) for piece in missing)
     factory = _PieceFactory(name, setting, known, replace(problem.limits, seconds=SECONDS))
-    for finished in pool.run(factory, pieces):
-        piece = pieces[finished.index]
+    for finished in pool.run(factory, missing):
+        piece = missing[finished.index]
         if finished.value is None:
             raise RunError(f"{problem.name}: {piece} could not be worked out: {finished.failure}")
         contents[piece] = finished.value
-        watcher.done(missing[piece], finished.seconds)
-    return {piece: contents[piece] for piece in pieces}
+        watcher.done(str(piece))
+    return {piece: contents[piece] for piece in missing}
 
 
 SECONDS = 3600.0

@@ -57,7 +57,7 @@ def test_code_runs_from_its_first_block_to_the_last(
         for block in blocks(page):
             compile(block, page.name, "exec")
         return
-    assert known.values, "worked out before, so that no search has to"
+    assert known.postures, "worked out before, so that no search has to"
     monkeypatch.chdir(tmp_path)
     if page.name != "README.md":  # which begins with a search
         golden = REPOSITORY / "tests" / "golden" / "lifting" / "format-2"

@@ -29,7 +29,7 @@ def outputs_of(notebook: Path) -> Iterator[Any]:
 
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebook_runs(notebook: Path, known: Precomputed) -> None:
-    assert known.values, "worked out before, so that the notebook finds it in the cache"
+    assert known.postures, "worked out before, so that the notebook finds it in the cache"
     book = executed(notebook)
     assert all(cell.get("execution_count") for cell in book.cells if cell.cell_type == "code")
 

@@ -21,7 +21,6 @@ from evodesign.posture.formulations.joint import JointPostures
 from evodesign.posture.precompute.meetings import with_meetings
 from evodesign.posture.results import CaseSolution
 from evodesign.posture.symmetry import symmetric_forms, whole
-from evodesign.posture.warm_start import start_from
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.file import CollisionsTable, LimitsTable
@@ -131,8 +130,6 @@ def effort(evaluator: Evaluator, problem: DesignProblem, values: object, solutio
     forms = symmetric_forms(scene) if of_halves else (whole(scene.robot), whole(scene.human))
     postures, raw = JointPostures("resolved", forms, setting, SolverCache()), solution.raw
     assert raw is not None
-    if solution.person is not None:  # robot and person were solved one after the other
-        raw = replace(raw, values=start_from(postures._solver.program, forms, solution.instants))
     found = postures.followed(values, solution, raw)  # type: ignore[arg-type]
     assert found is not None
     assert found.raw is not None

@@ -16,7 +16,6 @@ from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.precompute import precompute_setting, precomputed
 from evodesign.problem.progress import PrecomputeProgress
-from evodesign.problem.time_left import PendingPiece, TimeLeft
 
 
 class Forgetful:
@@ -52,19 +51,17 @@ class Forgetful:
 class Watcher(PrecomputeProgress):
     def __init__(self) -> None:
         self.told: list[int] = []
-        self.left = TimeLeft()
+        self.ready: list[str] = []
 
-    def missing(self, pieces: Sequence[PendingPiece], processes: int) -> None:
-        assert processes == 3
-        self.told.append(len(pieces))
-        self.left = self.left.with_missing(pieces, processes, 0.0)
+    def missing(self, pieces: int) -> None:
+        self.told.append(pieces)
 
-    def done(self, piece: PendingPiece, seconds: float) -> None:
-        self.left = self.left.with_done(piece, seconds, 0.0)
+    def done(self, piece: str) -> None:
+        self.ready.append(piece)
 
 
 @pytest.mark.parametrize(
-    ("lost", "damaged", "told"), [(0, 0, []), (100, 0, [9]), (6, 0, [6]), (6, 1, [6, 1])]
+    ("lost", "damaged", "told"), [(0, 0, []), (100, 0, [6]), (4, 0, [4]), (4, 1, [4, 1])]
 )
 def test_all_pieces_are_told_before_the_first_is_worked_out(
     lost: int,
@@ -75,9 +72,8 @@ def test_all_pieces_are_told_before_the_first_is_worked_out(
 ) -> None:
     forgetful, watcher = Forgetful(problem, lost, damaged), Watcher()
     found = precomputed(problem, cast("Cache", forgetful), cast("Pool", forgetful), watcher)
-    assert found.values.keys() == known.values.keys()
-    each = "designs, starts of the highest and lowest load, and two pieces at three heights"
-    assert len(forgetful.asked) == 9, each
+    assert found.postures.keys() == known.postures.keys()
+    each = "designs, starts of the highest and lowest load, and of postures at three heights"
+    assert len(forgetful.asked) == 6, each
     assert watcher.told == told
-    assert len(watcher.left.done) == forgetful.worked_out == sum(told)
-    assert watcher.left.at_work == watcher.left.waiting == ()
+    assert len(watcher.ready) == len({*watcher.ready}) == forgetful.worked_out == sum(told)
