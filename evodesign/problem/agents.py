@@ -6,7 +6,7 @@ A population's table stands for one person per sex and percentile.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 import msgspec
@@ -265,21 +265,3 @@ def _members(key: str, table: HumanTable, source: ProblemSource) -> list[tuple[s
         )
         for name, person in people.items()
     ]
-
-
-def refuse_unrated(key: str, name: str, source: ProblemSource, people: Sequence[Agent]) -> None:
-    """Refuse a quantity that needs strengths where a person has none.
-
-    Args:
-        key: where the problem file names it.
-        name: of the quantity.
-        source: the problem, for messages.
-        people: all that the problem has.
-    Raises:
-        InputError: none of a person's moving joints has a strength.
-    """
-    for person in people:
-        if not any(joint in person.strengths for joint in person.joints):
-            wanted = "people of known strength (stature_m, mass_kg and sex, or strengths_n_m)"
-            found = f"'{name}' with a person '{person.tree.name}' of unknown strength"
-            raise InputError(source.path, key, wanted, found)

@@ -12,20 +12,16 @@ from collections.abc import Mapping, Sequence
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.scene import Agent
-from evodesign.problem.agents import refuse_unrated
 from evodesign.problem.design_result import ObjectiveKind
 from evodesign.problem.file import BoundsTable, ProblemFile
-from evodesign.problem.hardware_objectives import refuse_without_hardware
-from evodesign.problem.motion_objectives import refuse_still
 from evodesign.problem.objectives import (
-    NEED_STRENGTHS,
     OTHERWISE_CALLED,
     QUANTITIES,
     objective_kind,
     objective_kinds,
 )
-from evodesign.problem.person_objectives import refuse_without_back
 from evodesign.problem.torque_limits import PEAK_TORQUE, refuse_unlimited_peak
+from evodesign.problem.unanswered_quantities import refuse_unanswered_quantity
 from evodesign.records import Constraint, ProblemSource
 from evodesign.violations import BODIES_APART
 
@@ -68,11 +64,7 @@ def constraints_of(
         place = f"constraints.{key}"
         name, kind = _quantity(key, source)
         _check_bounds(table, place, source)
-        if name.endswith(NEED_STRENGTHS):
-            refuse_unrated(place, name, source, people)
-        refuse_without_hardware(place, name, tables, source)
-        refuse_still(place, name, tables, source, people)
-        refuse_without_back(place, name, source, people)
+        refuse_unanswered_quantity(place, name, tables, source, people)
         if name.endswith(PEAK_TORQUE):
             refuse_unlimited_peak(place, name, tables, source, robot)
         found.append(Constraint(name=name, unit=kind.unit, lower=table.lower, upper=table.upper))

@@ -12,7 +12,6 @@ from evodesign.mechanics.scene import Scene
 from evodesign.pool.base import Limits
 from evodesign.problem.agents import (
     refuse_unknown,
-    refuse_unrated,
 )
 from evodesign.problem.design_hardware import (
     actuator_parameters,
@@ -23,10 +22,8 @@ from evodesign.problem.design_space import (
     density_parameters,
 )
 from evodesign.problem.file import ProblemFile
-from evodesign.problem.hardware_objectives import refuse_without_hardware
-from evodesign.problem.motion_objectives import refuse_still
-from evodesign.problem.objectives import NEED_STRENGTHS, OTHERWISE_CALLED, objective_kind, objective_kinds
-from evodesign.problem.person_objectives import refuse_without_back
+from evodesign.problem.objectives import OTHERWISE_CALLED, objective_kind, objective_kinds
+from evodesign.problem.unanswered_quantities import refuse_unanswered_quantity
 from evodesign.records import (
     Hold,
     Lift,
@@ -162,10 +159,6 @@ def objectives_of(
             raise InputError(source.path, key, wanted, f"'{name}'{nearest_name(meant, known)}")
         if names.count(name) > 1:
             raise InputError(source.path, key, "each objective once", f"'{name}' twice")
-        refuse_without_hardware(key, name, tables, source)
-        refuse_still(key, name, tables, source, [scene.human for scene in scenes])
-        refuse_without_back(key, name, source, [scene.human for scene in scenes])
-        if name.endswith(NEED_STRENGTHS):
-            refuse_unrated(key, name, source, [scene.human for scene in scenes])
+        refuse_unanswered_quantity(key, name, tables, source, [scene.human for scene in scenes])
         objectives.append(Objective(name=name, sense=sense, unit=kind.unit))
     return tuple(objectives)

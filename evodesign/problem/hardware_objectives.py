@@ -17,16 +17,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from evodesign.body.placement import Placement
-from evodesign.errors import InputError
-from evodesign.hardware.actuators import catalogue
-from evodesign.hardware.structure import STRENGTHS
 from evodesign.mechanics import link_beams
 from evodesign.mechanics.floating_base import FloatingBody
 from evodesign.mechanics.scene import ROBOT, SIDES, Agent, Scene
 from evodesign.mechanics.stance_case import StanceCase, StanceTorques, stance_torques
 from evodesign.posture.results import AgentPosture
-from evodesign.problem.file import ProblemFile
-from evodesign.records import ProblemSource
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
@@ -171,40 +166,3 @@ class StanceModel:
             )
             for asked in needed
         ]
-
-
-def refuse_without_hardware(key: str, name: str, tables: ProblemFile, source: ProblemSource) -> None:
-    """Refuse a quantity of actuators or walls where there are none, or of another material.
-
-    Args:
-        key: where the problem file names it.
-        name: of the quantity.
-        tables: the problem file.
-        source: the problem, for messages.
-    Raises:
-        InputError: naming the quantity.
-    """
-    if (name == COST or name.endswith(NEED_ACTUATORS)) and not tables.design.actuator:
-        raise InputError(source.path, key, f"a [[design.actuator]] for '{name}'", "none")
-    if name == COST:
-        _refuse_without_prices(key, tables, source)
-    if name.endswith(NEED_WALLS) and not tables.design.wall:
-        raise InputError(source.path, key, f"a [[design.wall]] for '{name}'", "none")
-    for position, wall in enumerate(tables.design.wall if name.endswith(OF_BEAMS) else ()):
-        if wall.material is not None and wall.material not in STRENGTHS:
-            wanted = f"one of {', '.join(STRENGTHS)}, as '{name}' is asked for"
-            raise InputError(source.path, f"design.wall[{position}].material", wanted, f"'{wall.material}'")
-
-
-def _refuse_without_prices(key: str, tables: ProblemFile, source: ProblemSource) -> None:
-    """Refuse a cost where an actuator is no model, or a model has no price."""
-    known = {**catalogue(), **{row.model: row for row in tables.actuator}}
-    for position, table in enumerate(tables.design.actuator):
-        where = f"design.actuator[{position}]"
-        if table.models is None:
-            wanted = f"models with a price_eur in {where} for '{COST}'"
-            raise InputError(source.path, key, wanted, "sizes of the law, which has no prices")
-        for model in table.models:
-            if known[model].price_eur is None:
-                wanted = f"a price_eur of every model in {where} for '{COST}', in an [[actuator]] table"
-                raise InputError(source.path, key, wanted, f"none of '{model}'")

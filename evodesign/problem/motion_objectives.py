@@ -19,13 +19,10 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from evodesign.errors import InputError
 from evodesign.human.back import LUMBAR
-from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
+from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
 from evodesign.posture.results import AgentPosture
-from evodesign.problem.file import ProblemFile
 from evodesign.problem.hardware_objectives import holding_power, power_by_torque
-from evodesign.records import ProblemSource
 
 Value = TypeVar("Value", float, NDArray[np.float64])
 
@@ -87,27 +84,3 @@ def mean_over_time(times: Sequence[float], values: Sequence[Value]) -> Value:
     weights = (np.append(lengths, 0.0) + np.insert(lengths, 0, 0.0)) / (2.0 * (times[-1] - times[0]))
     parts = (float(weight) * value for weight, value in zip(weights, values, strict=True))
     return functools.reduce(operator.add, parts)
-
-
-def refuse_still(
-    key: str, name: str, tables: ProblemFile, source: ProblemSource, people: Sequence[Agent]
-) -> None:
-    """Refuse a quantity of moving loads where none moves, and of still ones where one does.
-
-    Args:
-        key: where the problem file names it.
-        name: of the quantity.
-        tables: the problem file.
-        source: the problem, for messages.
-        people: all that the problem has.
-    Raises:
-        InputError: naming the quantity; or a person without joints at L5/S1.
-    """
-    if name.endswith(NEED_LIFTS) and not tables.task.lift:
-        raise InputError(source.path, key, f"a [[task.lift]] for '{name}'", "none")
-    if name in OF_HOLDS and tables.task.lift:
-        raise InputError(source.path, key, f"loads held still for '{name}'", "a [[task.lift]]")
-    for person in people if name.endswith(SPINE) else ():
-        if not any(joint.startswith(LUMBAR) for joint in person.joints):
-            wanted = f"people with joints named {LUMBAR}... for '{name}'"
-            raise InputError(source.path, key, wanted, f"'{person.tree.name}' without")

@@ -10,19 +10,17 @@ The formulas are those of `mechanics.load_torques` and `mechanics.lumbar_load`.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
-from evodesign.errors import InputError
 from evodesign.human.back import FLEXION, MUSCLE_LEVER
 from evodesign.human.endurance import endurance
 from evodesign.mechanics.load_torques import LoadTorques, load_torques
-from evodesign.mechanics.lumbar_load import LumbarLoad, has_lumbar_disc, lumbar_load
+from evodesign.mechanics.lumbar_load import LumbarLoad, lumbar_load
 from evodesign.mechanics.scene import HUMAN, SIDES, Agent, Scene
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.design_result import CaseQuantity, DesignResult, PostureSlopes, values_over_instants
-from evodesign.records import ProblemSource
 
 BACK = "back_compression"
 """The quantity that needs people with a joint at L5/S1."""
@@ -94,20 +92,3 @@ def endurance_seconds(result: DesignResult) -> float | None:
     found = values_over_instants(holding_seconds, result)
     least = math.inf if found is None else min(each for values in found for each in values)
     return least if least < math.inf else None
-
-
-def refuse_without_back(key: str, name: str, source: ProblemSource, people: Sequence[Agent]) -> None:
-    """Refuse the compression of the back for a person without a joint of flexion at L5/S1.
-
-    Args:
-        key: where the problem file names it.
-        name: of the quantity.
-        source: the problem, for messages.
-        people: all that the problem has.
-    Raises:
-        InputError: naming the quantity and the person.
-    """
-    for person in people if name.endswith(BACK) else ():
-        if not has_lumbar_disc(person):
-            wanted = f"people whose joint {FLEXION} moves for '{name}'"
-            raise InputError(source.path, key, wanted, f"'{person.tree.name}' without")

@@ -16,13 +16,15 @@ from evodesign.posture.check import AgentModel
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import build_problem
 from evodesign.problem.constraints import constraint_key
+from evodesign.problem.file import ProblemFile
 from evodesign.problem.person_objectives import (
     back_compression,
     compression_by_posture,
     compression_by_torque,
-    refuse_without_back,
 )
-from evodesign.problem.source import read_source
+from evodesign.problem.source import decode_toml, read_source
+from evodesign.problem.unanswered_quantities import refuse_unanswered_quantity
+from evodesign.records import ProblemSource
 from tests.problem.standing_people import PERSON, POSTURES, SCENE, G, beyond, masses, places, standing
 
 FLEXION = "jL5S1_roty"
@@ -118,9 +120,10 @@ def test_it_can_be_bounded_by_the_limit_in_newtons(repository: Path) -> None:
 def test_a_person_whose_back_is_stiff_there_is_refused_in_a_sentence() -> None:
     stiff = replace(PERSON, joints=tuple(name for name in PERSON.joints if name != FLEXION))
     with pytest.raises(InputError, match=r"objectives: wanted people whose joint jL5S1_roty moves for 'wor"):
-        refuse_without_back("objectives", "worst_back_compression", a_source(), [stiff])
-    refuse_without_back("objectives", "human_torque", a_source(), [stiff])
+        refuse_unanswered_quantity("objectives", "worst_back_compression", *asked(), [stiff])
+    refuse_unanswered_quantity("objectives", "human_torque", *asked(), [stiff])
 
 
-def a_source():
-    return read_source(Path(__file__).parents[2] / "problems" / "point_grasp.toml")
+def asked() -> tuple[ProblemFile, ProblemSource]:
+    source = read_source(Path(__file__).parents[2] / "problems" / "point_grasp.toml")
+    return decode_toml(source.text, source.path, ProblemFile), source

@@ -11,12 +11,13 @@ import pytest
 from evodesign.errors import InputError
 from evodesign.human.endurance import endurance
 from evodesign.mechanics.scene import HUMAN
-from evodesign.problem.agents import refuse_unrated
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.constraints import constraint_key
 from evodesign.problem.evaluate import Evaluator
+from evodesign.problem.file import ProblemFile
 from evodesign.problem.objectives import objective_value
-from evodesign.problem.source import read_source
+from evodesign.problem.source import decode_toml, read_source
+from evodesign.problem.unanswered_quantities import refuse_unanswered_quantity
 
 
 def test_it_is_the_least_time_of_all_cases(problem: DesignProblem, evaluator: Evaluator) -> None:
@@ -48,6 +49,7 @@ def test_a_lift_has_no_holding_time(repository: Path) -> None:
 
 
 def test_people_without_strengths_are_refused(problem: DesignProblem) -> None:
-    nobody = replace(problem.scene.human, strengths={})
+    nobody, source = replace(problem.scene.human, strengths={}), problem.source
+    tables = decode_toml(source.text, source.path, ProblemFile)
     with pytest.raises(InputError, match="wanted people of known strength"):
-        refuse_unrated("objectives.maximise[0]", "endurance_s", problem.source, [nobody])
+        refuse_unanswered_quantity("objectives.maximise[0]", "endurance_s", tables, source, [nobody])
