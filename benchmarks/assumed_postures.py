@@ -34,6 +34,8 @@ from scipy.stats import kendalltau
 
 from benchmarks.inner_problem import HERE
 from evodesign.analysis.front import front, minimised
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.factory import cached_precomputed
 from evodesign.human.measured_posture import (
     ASSUMPTION,
     FEATURES,
@@ -48,8 +50,6 @@ from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.pool.registry import make_pool
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.factory import cached_precomputed
 from evodesign.records import Assessment, Case, Hold, ProblemSource, Status, Task
 from evodesign.runlog.run import read_run
 

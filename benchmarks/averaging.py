@@ -25,6 +25,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.guess.problem_text import guessed_problem
 from evodesign.mechanics.scene import ROBOT
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.candidate import Candidate
@@ -34,8 +36,6 @@ from evodesign.posture.formulations.joint import JointPostures
 from evodesign.posture.results import Instant
 from evodesign.posture.symmetry import whole
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.guess.problem_text import guessed_problem
 from evodesign.problem.meshes import with_meshes_beside
 from evodesign.problem.named_files import read_robot
 from evodesign.problem.source import source_of

@@ -20,12 +20,12 @@ from PIL import Image
 
 from benchmarks.clearance import with_table
 from evodesign.analysis.front import front
+from evodesign.evaluation.evaluate import detail_of
+from evodesign.evaluation.factory import evaluator_of
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.design_result import DesignResult
-from evodesign.problem.evaluate import detail_of
-from evodesign.problem.factory import evaluator_of
 from evodesign.problem.source import read_source
+from evodesign.quantities.design_result import DesignResult
 from evodesign.report.figures.paint import write_figure
 from evodesign.report.figures.posture_figure import Camera, posture_figure
 from evodesign.report.figures.posture_views import alone

@@ -22,15 +22,15 @@ from typing import Any
 
 from benchmarks.clearance import without_table
 from benchmarks.public_robots import timed
+from evodesign.evaluation.clearance import distance_json, solved_distances
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.factory import cached_precomputed
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.pool.worker import SerialPool
 from evodesign.posture.precompute.meetings import REACH
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.clearance import distance_json, solved_distances
-from evodesign.problem.design_result import DesignResult
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.source import read_source
+from evodesign.quantities.design_result import DesignResult
 from tests.robots import HUMANOIDS, MJCF_HUMANOIDS
 
 HEAD = ("robot", "pairs checked", "with rows", "heights solved", "nearest [mm]", "without", "reach [m]", "s")

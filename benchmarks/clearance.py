@@ -30,14 +30,14 @@ import numpy as np
 from benchmarks.inner_problem import Design, processors
 from evodesign.analysis.front import front
 from evodesign.body.placement import Placement
+from evodesign.evaluation.clearance import solved_distances
+from evodesign.evaluation.evaluate import Evaluator, detail_of
+from evodesign.evaluation.factory import evaluator_of
 from evodesign.mechanics.scene import ROBOT
 from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.clearance import solved_distances
-from evodesign.problem.design_result import DesignResult
-from evodesign.problem.evaluate import Evaluator, detail_of
-from evodesign.problem.factory import evaluator_of
 from evodesign.problem.source import read_source
+from evodesign.quantities.design_result import DesignResult
 from evodesign.records import CaseDetail, ProblemSource
 from evodesign.report.subset import subsample
 from evodesign.runlog.run import read_run

@@ -32,16 +32,16 @@ import msgspec
 import numpy as np
 
 from evodesign.analysis.hypervolume import hypervolume
+from evodesign.evaluation.baseline import Baseline
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.factory import cached_precomputed
 from evodesign.pool.registry import make_pool
 from evodesign.posture.formulations.codesign import JointSolution
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.design_result import DesignResult
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.factory import cached_precomputed
-from evodesign.problem.objectives import objective_values
 from evodesign.problem.source import read_source
+from evodesign.quantities.design_result import DesignResult
+from evodesign.quantities.objectives import objective_values
 from evodesign.records import Assessment, Evaluation, Genome, Objective, SearchSettings, Sense, Status
 from evodesign.searches.base import JOINT_STARTS, Outcome
 from evodesign.searches.cma_instances import default_population

@@ -23,8 +23,8 @@ from ribs.archives import GridArchive
 from ribs.emitters import IsoLineEmitter
 
 from evodesign.analysis.conditions import described
+from evodesign.evaluation.factory import evaluator_of
 from evodesign.problem.build import build_problem
-from evodesign.problem.factory import evaluator_of
 from evodesign.problem.source import read_source
 from evodesign.records import Descriptor, Evaluation, Genome, SearchSettings
 from evodesign.runlog.header import header_of

@@ -22,8 +22,8 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from evodesign.evaluation.factory import evaluator_of
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.factory import evaluator_of
 from evodesign.problem.source import read_source
 from evodesign.records import Evaluation
 from evodesign.runlog.header import header_of

@@ -30,8 +30,8 @@ import msgspec
 import numpy as np
 
 from benchmarks.baseline_searches import BASELINES, BOTORCH
+from evodesign.evaluation.factory import evaluator_of
 from evodesign.problem.build import build_problem
-from evodesign.problem.factory import evaluator_of
 from evodesign.problem.source import read_source
 from evodesign.records import Evaluation
 from evodesign.runlog.header import header_of

@@ -19,14 +19,14 @@ from pathlib import Path
 
 import numpy as np
 
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.factory import evaluator_of
+from evodesign.evaluation.sensitivities import DesignDerivative, Sensitivities
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.design_result import DesignResult
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.factory import evaluator_of
-from evodesign.problem.objectives import objective_kinds
-from evodesign.problem.sensitivities import DesignDerivative, Sensitivities
 from evodesign.problem.source import read_source
+from evodesign.quantities.design_result import DesignResult
+from evodesign.quantities.objectives import objective_kinds
 
 OBJECTIVES = objective_kinds()
 

@@ -17,9 +17,9 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.factory import evaluator_of
 from evodesign.problem.build import build_problem
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.factory import evaluator_of
 from evodesign.problem.source import read_source
 from evodesign.records import ProblemSource, Status
 

@@ -9,11 +9,11 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
+from evodesign.evaluation.factory import cached_precomputed
 from evodesign.pool.joblib_pool import JoblibPool
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.source import read_source
 from evodesign.records import ProblemSource
 from evodesign.tree.resize import resize

@@ -24,6 +24,7 @@ import numpy as np
 from joblib import Parallel, delayed
 
 from benchmarks.inner_problem import DEFAULT, HERE, Design, known_at, problem_named, random_designs
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.nlp.landscape import Landscape
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
 from evodesign.posture.formulations.base import Setting
@@ -32,8 +33,7 @@ from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.meetings import with_meetings
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.design_result import DesignResult
-from evodesign.problem.evaluate import Evaluator
+from evodesign.quantities.design_result import DesignResult
 from evodesign.records import Status
 
 

@@ -24,6 +24,7 @@ import numpy as np
 
 from benchmarks.inner_problem import HERE, Design, known_at, problem_at, random_designs
 from benchmarks.paper_formulation import measure, measure_ours, reaching_designs
+from evodesign.evaluation.evaluate import AssessmentFactory, Evaluator
 from evodesign.nlp.landscape import Landscape
 from evodesign.nlp.program import Start
 from evodesign.nlp.solver import RawSolution, Solver
@@ -33,7 +34,6 @@ from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.evaluate import AssessmentFactory, Evaluator
 from evodesign.records import Hold, Status
 
 HOLD = Hold(height_m=1.0)

@@ -17,9 +17,9 @@ import msgspec
 import numpy as np
 
 from benchmarks.inner_problem import HERE
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.motion.solution import MotionCase
 from evodesign.problem.build import build_problem
-from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.source import read_source
 
 PROBLEM = HERE.parent / "problems" / "icub_lift.toml"

@@ -25,14 +25,14 @@ import numpy as np
 import tomli_w
 
 from benchmarks.inner_problem import HERE
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import HUMAN
 from evodesign.nlp.method import MethodName
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.design_result import DesignResult
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.motion_objectives import l5s1_moment
 from evodesign.problem.source import read_source
+from evodesign.quantities.design_result import DesignResult
+from evodesign.quantities.motion_quantities import l5s1_moment
 from evodesign.validation.measured import STOOPER, data_rows
 from evodesign.validation.posed import PosedPerson
 

@@ -24,6 +24,8 @@ from dataclasses import dataclass, field, replace
 import msgspec
 
 from benchmarks.inner_problem import HERE, PROBLEM, Design, processors, random_designs
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.factory import evaluator_of
 from evodesign.mechanics.scene import Scene
 from evodesign.motion.lifting import LiftProblem
 from evodesign.motion.solution import LiftSolution
@@ -33,8 +35,6 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import Symmetry
 from evodesign.posture.precompute.meetings import with_meetings
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.factory import evaluator_of
 from evodesign.problem.source import read_source
 from evodesign.records import Hold
 from evodesign.tasks import Lift

@@ -24,6 +24,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.inner_problem import HERE
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.factory import evaluator_of
+from evodesign.evaluation.gradients import assessed_gradients
+from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.program import LiftProgram
 from evodesign.motion.solution import MotionCase
@@ -31,13 +35,9 @@ from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.design_result import DesignResult
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.factory import evaluator_of
-from evodesign.problem.gradients import assessed_gradients
-from evodesign.problem.objectives import objective_value
-from evodesign.problem.sensitivities import Sensitivities
 from evodesign.problem.source import read_source
+from evodesign.quantities.design_result import DesignResult
+from evodesign.quantities.objectives import objective_value
 
 PROBLEM = HERE.parent / "problems" / "icub_lift.toml"
 

@@ -21,6 +21,9 @@ import numpy as np
 
 from benchmarks.inner_problem import HERE, Design, problem_at, processors, random_designs
 from benchmarks.lift_speed import ENDS
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.factory import evaluator_of
+from evodesign.evaluation.lifts import Lifts
 from evodesign.mechanics.scene import HUMAN
 from evodesign.motion.lifting import lift_program, moved_posture
 from evodesign.motion.program import LiftProgram
@@ -30,9 +33,6 @@ from evodesign.nlp.solver import status_of
 from evodesign.posture.check import Unchecked
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.results import AgentPosture, Attempt
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.factory import evaluator_of
-from evodesign.problem.lifts import Lifts
 from evodesign.records import Hold, Status
 from evodesign.tasks import Lift
 from evodesign.tasks.lift import KNOTS

@@ -18,9 +18,9 @@ import numpy as np
 from scipy.stats import kendalltau
 
 from benchmarks.inner_problem import HERE, Design, problem_at, processors, random_designs
+from evodesign.evaluation.factory import evaluator_of
+from evodesign.evaluation.lifts import Lifts
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.factory import evaluator_of
-from evodesign.problem.lifts import Lifts
 from evodesign.tasks import Lift
 
 HEIGHTS = (0.8, 0.9, 1.0, 1.1, 1.2)

@@ -24,8 +24,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.inner_problem import HERE, processors
+from evodesign.evaluation.factory import evaluator_of
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.factory import evaluator_of
 from evodesign.records import Hold
 from evodesign.runlog.run import read_run
 

@@ -20,11 +20,11 @@ from typing import Any
 
 import msgspec
 
+from evodesign.evaluation.factory import evaluation_factory
 from evodesign.evolve import start
 from evodesign.pool.registry import make_pool
 from evodesign.pool.worker import SerialPool
 from evodesign.problem.build import build_problem
-from evodesign.problem.factory import evaluation_factory
 from evodesign.problem.source import read_source
 from evodesign.records import Evaluation
 from evodesign.runlog.header import header_of

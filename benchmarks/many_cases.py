@@ -22,11 +22,11 @@ from typing import Any
 import numpy as np
 
 from benchmarks.inner_problem import HERE, PROBLEM, Design, known_at, random_designs
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import build_problem
-from evodesign.problem.design_result import DesignResult
-from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.source import read_source
+from evodesign.quantities.design_result import DesignResult
 from evodesign.records import Status
 
 SEVERAL = PROBLEM.parent / "three_people_three_loads.toml"

@@ -31,6 +31,7 @@ import tomli_w
 
 from benchmarks.inner_problem import HERE, Design, processors
 from evodesign.body.placement import Placement
+from evodesign.evaluation.factory import evaluator_of
 from evodesign.mechanics.scene import HUMAN
 from evodesign.nlp.method import MethodName
 from evodesign.posture.design_checkers import DesignCheckers
@@ -40,10 +41,9 @@ from evodesign.posture.precompute.meetings import with_meetings
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import AgentPosture, Array, CaseSolution
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.design_result import DesignResult
-from evodesign.problem.factory import evaluator_of
 from evodesign.problem.person_posture import HEAD
 from evodesign.problem.source import read_source
+from evodesign.quantities.design_result import DesignResult
 from evodesign.records import Status
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree

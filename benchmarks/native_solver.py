@@ -35,13 +35,13 @@ from benchmarks.inner_problem import (
     problem_named,
     random_designs,
 )
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.judge import AGREEMENT
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.solver import RawSolution, Solver
 from evodesign.posture.results import Attempt, CaseSolution, Instant
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.design_result import DesignResult
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.judge import AGREEMENT
+from evodesign.quantities.design_result import DesignResult
 from evodesign.records import Assessment, Status
 
 BLOCK = 10

@@ -23,6 +23,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.paper_posture import PaperPostures
+from evodesign.evaluation.factory import cached_precomputed
 from evodesign.nlp.method import SolverOptions
 from evodesign.pool.worker import SerialPool
 from evodesign.posture.check import AgentModel, Checker
@@ -31,7 +32,6 @@ from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.factory import cached_precomputed
 from evodesign.problem.source import read_source
 from evodesign.records import Hold, Status
 

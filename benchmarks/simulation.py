@@ -20,11 +20,11 @@ from typing import Any
 import evodesign
 from benchmarks.inner_problem import HERE
 from evodesign.analysis.front import front
-from evodesign.problem.factory import evaluator_of
-from evodesign.problem.lifts import Lifts
-from evodesign.problem.progress import SILENT
-from evodesign.problem.simulation_json import simulations_json
-from evodesign.problem.simulations import HOLD_SECONDS, simulated_holds, simulated_lifts
+from evodesign.evaluation.factory import evaluator_of
+from evodesign.evaluation.lifts import Lifts
+from evodesign.evaluation.progress import SILENT
+from evodesign.evaluation.simulation_json import simulations_json
+from evodesign.evaluation.simulations import HOLD_SECONDS, simulated_holds, simulated_lifts
 from evodesign.records import Lift
 from evodesign.report.opened_design import open_design
 from evodesign.runlog.run import read_run

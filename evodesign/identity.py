@@ -166,7 +166,7 @@ def code_digest(*modules: str) -> str:
     """Digest of all the code that modules of evodesign run, as it is when the process first asks.
 
     Args:
-        modules: their full names, such as `evodesign.problem.evaluate`.
+        modules: their full names, such as `evodesign.evaluation.evaluate`.
     Raises:
         KeyError: there is no such module.
     """

@@ -25,8 +25,8 @@ from evodesign.analysis.conditions import described
 from evodesign.analysis.front import RunningFront, minimised
 from evodesign.analysis.run_state import RunState
 from evodesign.errors import AllFailed
+from evodesign.evaluation.progress import PrecomputeProgress
 from evodesign.pool.base import Factory, Finished, Pool
-from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import (
     Assessed,
     Assessment,

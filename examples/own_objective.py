@@ -12,7 +12,7 @@ import sys
 import tomllib
 
 import evodesign
-from evodesign.problem.design_result import CaseQuantity
+from evodesign.quantities.design_result import CaseQuantity
 
 
 def larger_foot_force(scene, postures):

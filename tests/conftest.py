@@ -12,6 +12,9 @@ import msgspec
 import pytest
 from hypothesis import HealthCheck, settings
 
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.precompute import precompute_setting, precomputed, staged_pieces
+from evodesign.evaluation.progress import PrecomputeProgress
 from evodesign.interrupts import INTERRUPTS
 from evodesign.nlp.disk_cache import user_cache
 from evodesign.pool.joblib_pool import JoblibPool
@@ -21,9 +24,6 @@ from evodesign.posture.precompute.keys import key_of
 from evodesign.posture.precompute.plan import OF_STARTS
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.precompute import precompute_setting, precomputed, staged_pieces
-from evodesign.problem.progress import PrecomputeProgress
 from evodesign.problem.source import read_source
 from tests.machine import NEEDS, leave_out, left_out
 from tests.measured_people import search_with_people
@@ -179,7 +179,7 @@ def evaluator(problem: DesignProblem, known: Precomputed) -> Evaluator:
 @pytest.fixture
 def few_designs_meet(monkeypatch: pytest.MonkeyPatch) -> None:
     """Pairs of bodies near each other are looked for in a few designs, in this process, for time."""
-    monkeypatch.setattr("evodesign.problem.factory.make_pool", lambda *_, **__: SerialPool())
+    monkeypatch.setattr("evodesign.evaluation.factory.make_pool", lambda *_, **__: SerialPool())
     for number, few in {"DESIGNS": 2, "FEWEST": 1}.items():
         monkeypatch.setattr(meetings, number, few)
 

@@ -27,7 +27,7 @@ from evodesign.identity import code_digest, digest, import_closure
 from evodesign.problem.build import DesignProblem
 from tests.rewriting import write_anew
 
-EVALUATING = ("evodesign.problem.evaluate", "evodesign.problem.precompute")
+EVALUATING = ("evodesign.evaluation.evaluate", "evodesign.evaluation.precompute")
 PIECES = "evodesign.posture.precompute.pieces"
 
 
@@ -242,7 +242,7 @@ print(json.dumps(dict(inside)))
 """
 
 
-@pytest.mark.parametrize("modules", [EVALUATING, (PIECES,), ("evodesign.problem.baseline",)])
+@pytest.mark.parametrize("modules", [EVALUATING, (PIECES,), ("evodesign.evaluation.baseline",)])
 def test_the_closure_holds_all_that_is_loaded(modules: tuple[str, ...], repository: Path) -> None:
     program = LOADED.format(modules=modules, evaluating=modules == EVALUATING)
     done = subprocess.run([sys.executable, "-c", program], cwd=repository, capture_output=True, check=True)

@@ -21,6 +21,8 @@ import msgspec
 import pytest
 
 from evodesign.collision.rules import CollisionRules
+from evodesign.evaluation.factory import NO_PART_OF_EVALUATIONS, problem_digest
+from evodesign.evaluation.precompute import precompute_setting
 from evodesign.identity import Exceptions
 from evodesign.mechanics.scene import Payload, Scene
 from evodesign.posture.formulations.base import NO_PART_OF_PROGRAMS, program_key
@@ -28,9 +30,7 @@ from evodesign.posture.postures import Symmetry
 from evodesign.posture.precompute.keys import NO_PART_OF, key_of, no_part_of
 from evodesign.posture.precompute.plan import Piece, PrecomputeSetting, Subject
 from evodesign.problem.build import build_problem
-from evodesign.problem.factory import NO_PART_OF_EVALUATIONS, problem_digest
 from evodesign.problem.file import ProblemFile
-from evodesign.problem.precompute import precompute_setting
 from evodesign.problem.source import decode_toml, read_source
 from evodesign.records import Hold, ProblemSource
 
@@ -242,7 +242,7 @@ def test_every_field_of_a_problem_file_counts_in_the_key_of_its_evaluations(
     files = {name: text for name, text in source.files.items() if name != tables.search.start}
 
     def key(whole: tuple[ProblemFile, ProblemSource]) -> str:
-        monkeypatch.setattr("evodesign.problem.factory.decode_toml", lambda *_: whole[0])
+        monkeypatch.setattr("evodesign.evaluation.factory.decode_toml", lambda *_: whole[0])
         return problem_digest(whole[1])
 
     whole = (tables, msgspec.structs.replace(source, files=files))

@@ -12,13 +12,13 @@ from pathlib import Path
 import msgspec
 import pytest
 
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.mechanics.scene import ROBOT, SIDES, Scene
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.design_result import CaseQuantity
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.objectives import QUANTITIES
-from evodesign.problem.sensitivities import Sensitivities
+from evodesign.quantities.design_result import CaseQuantity
+from evodesign.quantities.objectives import QUANTITIES
 from evodesign.records import Genome, SearchSettings
 from evodesign.searches.base import Outcome
 from evodesign.searches.registry import SEARCHES, make_search
@@ -108,8 +108,8 @@ from pathlib import Path
 import msgspec
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.problem.build import build_problem
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.sensitivities import Sensitivities
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.problem.source import read_source
 from evodesign.records import Assessed
 from evodesign.tasks import Hold

@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from evodesign.analysis.failures import causes_of_infeasibility
-from evodesign.problem.objectives import objective_kinds
+from evodesign.quantities.objectives import objective_kinds
 from evodesign.records import (
     Assessment,
     Case,

@@ -133,7 +133,7 @@ class Design:
             >>> sorted(file.name for file in run.design(4).plot("figures-4") if file.suffix == ".png")[:3]
             ['postures.png', 'postures_front.png', 'postures_side.png']
         """
-        from evodesign.problem.progress import SILENT
+        from evodesign.evaluation.progress import SILENT
         from evodesign.report.figures.design import write_design_figures  # matplotlib takes its time to load
         from evodesign.report.opened_design import open_design
 

@@ -17,13 +17,13 @@ import msgspec
 from evodesign.analysis.decision_making import most_different
 from evodesign.analysis.front import front
 from evodesign.errors import InputError
+from evodesign.evaluation.progress import in_words
+from evodesign.evaluation.sampled_designs import SampledFactory, sampled_factory
 from evodesign.identity import digest
 from evodesign.pool.base import Pool
 from evodesign.pool.dispatch import run_stoppable
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.designs import alike
-from evodesign.problem.progress import in_words
-from evodesign.problem.sampled_designs import SampledFactory, sampled_factory
 from evodesign.problem.samples import refuse_unsampled
 from evodesign.records import SampledDesign, SampledPeople
 from evodesign.runlog.directory import locked

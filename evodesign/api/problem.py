@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, Any
 from evodesign.api.design import Design
 from evodesign.design.parameter import ALLOCATIONS, ParameterKind
 from evodesign.errors import InputError, nearest_name, on_one_line
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.factory import cached_precomputed
+from evodesign.evaluation.lifts import Lifts
 from evodesign.motion.solution import LiftSolution
 from evodesign.pool.registry import make_pool
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.design_space import refuse_no_choice
 from evodesign.problem.designs import beyond_bounds
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.factory import cached_precomputed
-from evodesign.problem.lifts import Lifts
 from evodesign.problem.notes import notes
 from evodesign.problem.shipped import shipped_problems
 from evodesign.problem.source import read_source, source_of

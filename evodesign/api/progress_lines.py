@@ -9,7 +9,7 @@ from typing import TextIO
 from evodesign.analysis.failures import causes, failures
 from evodesign.analysis.growth import growth
 from evodesign.errors import on_one_line
-from evodesign.problem.progress import PrecomputeProgress
+from evodesign.evaluation.progress import PrecomputeProgress
 from evodesign.records import Evaluation, Generation, RunHeader, Status
 from evodesign.runlog.session_log import Observer
 

@@ -27,9 +27,9 @@ from evodesign.analysis.front import minimised, to_minimise
 from evodesign.api.constraint_columns import constraint_names, constraint_values
 from evodesign.api.problem import Problem, open_problem
 from evodesign.errors import EvodesignError, InputError
+from evodesign.evaluation.factory import ValuesFactory, values_factory
 from evodesign.pool.base import Finished, Pool
 from evodesign.pool.registry import make_pool
-from evodesign.problem.factory import ValuesFactory, values_factory
 from evodesign.records import Assessed, Assessment
 
 

@@ -15,7 +15,7 @@ from evodesign.api.progress_lines import PrecomputeLines, SearchLines
 from evodesign.api.run import Run, open_run
 from evodesign.api.sessions import Budgets, Deadline, Workers, begin, new_directory, proceed
 from evodesign.errors import InputError, Interrupted
-from evodesign.problem.progress import SILENT, PrecomputeProgress
+from evodesign.evaluation.progress import SILENT, PrecomputeProgress
 from evodesign.records import Constraint, Evaluation, Generation, RunHeader
 from evodesign.runlog.run import RunLog
 from evodesign.runlog.session_log import Observer

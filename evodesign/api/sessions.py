@@ -16,15 +16,15 @@ import msgspec
 from evodesign import evolve
 from evodesign.api.people import draw_people, usual_designs, usual_reference
 from evodesign.errors import InputError, Interrupted, ResumeMismatch, RunError
+from evodesign.evaluation.evaluate import AssessmentFactory
+from evodesign.evaluation.factory import Remembering, evaluation_factory
+from evodesign.evaluation.judge import judged_notes
 from evodesign.nlp.compiler import NotCompiled
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.native.calls import method_library
 from evodesign.pool.base import Pool
 from evodesign.pool.registry import make_pool
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.evaluate import AssessmentFactory
-from evodesign.problem.factory import Remembering, evaluation_factory
-from evodesign.problem.judge import judged_notes
 from evodesign.problem.notes import notes
 from evodesign.problem.reread import reread
 from evodesign.problem.samples import asked_samples

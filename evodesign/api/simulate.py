@@ -12,7 +12,7 @@ from evodesign.tasks import Lift
 from evodesign.tasks.lift import profile_named
 
 if TYPE_CHECKING:
-    from evodesign.problem.simulations import SimulatedCase
+    from evodesign.evaluation.simulations import SimulatedCase
 
 
 def simulate(
@@ -51,7 +51,7 @@ def simulate(
         [('short, 0.8 m', True, True), ('tall, 0.8 m', True, True)]
     """
     refuse_without_mujoco()
-    from evodesign.problem.simulations import (
+    from evodesign.evaluation.simulations import (
         HOLD_SECONDS,
         lifts_among,
         picked_holds,

@@ -31,7 +31,7 @@ def baseline(
     from evodesign.analysis.failures import causes
     from evodesign.api.sessions import new_directory
     from evodesign.cli.output import print_lines
-    from evodesign.problem.baseline import GENERATION, refuse_unsuited
+    from evodesign.evaluation.baseline import GENERATION, refuse_unsuited
     from evodesign.problem.build import build_problem
     from evodesign.problem.source import read_source
     from evodesign.runlog.run import read_run

@@ -17,11 +17,11 @@ def check(problem: ProblemPath, json: Json = False) -> None:
     """
     from evodesign.cli.output import console, print_json, print_lines, show_notes
     from evodesign.cli.tables.problem import findings_table, model_tables, rules_table
+    from evodesign.guess.preflight import preflight
     from evodesign.problem.build import build_problem
     from evodesign.problem.inertia_rules import rule_differences
     from evodesign.problem.model_json import model_json
     from evodesign.problem.notes import notes
-    from evodesign.problem.preflight import preflight
     from evodesign.problem.source import read_source
 
     built = build_problem(read_source(problem))

@@ -14,7 +14,7 @@ from evodesign.files import make_folder
 if TYPE_CHECKING:
     from evodesign.analysis.people_spread import PeopleSpread
     from evodesign.problem.build import DesignProblem
-    from evodesign.problem.design_result import DesignResult
+    from evodesign.quantities.design_result import DesignResult
 
 UNSCALED = "unscaled"
 
@@ -40,12 +40,12 @@ def evaluate(
     from evodesign.cli.progress import precompute_progress
     from evodesign.cli.tables.design import design_tables
     from evodesign.cli.tables.spread import quantities_table
+    from evodesign.evaluation.clearance import overlaps, solved_distances
+    from evodesign.evaluation.evaluation_json import evaluation_json
+    from evodesign.evaluation.factory import evaluator_of
+    from evodesign.evaluation.sensitivities import Sensitivities
     from evodesign.problem.build import build_problem
-    from evodesign.problem.clearance import overlaps, solved_distances
-    from evodesign.problem.evaluation_json import evaluation_json
-    from evodesign.problem.factory import evaluator_of
     from evodesign.problem.notes import notes
-    from evodesign.problem.sensitivities import Sensitivities
     from evodesign.problem.source import read_source
 
     built = build_problem(read_source(problem, symmetry))
@@ -85,7 +85,7 @@ def _spread(built: DesignProblem, values: tuple[float, ...], jobs: int) -> Peopl
     from evodesign.analysis.people_spread import people_spread
     from evodesign.cli.output import show_notes
     from evodesign.cli.progress import precompute_progress
-    from evodesign.problem.sampled_designs import sampled_beside
+    from evodesign.evaluation.sampled_designs import sampled_beside
 
     designs = tuple(dict.fromkeys((values, built.space.unscaled(built.scene.robot.tree))))
     show_notes([f"{built.samples} samples of people: {built.samples * len(designs)} further evaluations"])
@@ -97,7 +97,7 @@ def _spread(built: DesignProblem, values: tuple[float, ...], jobs: int) -> Peopl
 def _write_figures(name: str, result: DesignResult, directory: Path) -> None:
     """Write figures of a result to an existing directory, and say where."""
     from evodesign.cli.output import show_notes
-    from evodesign.problem.evaluate import detail_of
+    from evodesign.evaluation.evaluate import detail_of
     from evodesign.report.figures.design import write_design_figures  # matplotlib takes its time to load
     from evodesign.report.scene_models import SceneSet
 

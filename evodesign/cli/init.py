@@ -27,7 +27,7 @@ def init(
     from evodesign.cli.tables.guesses import guesses_table
     from evodesign.errors import InputError
     from evodesign.files import is_there
-    from evodesign.problem.guess.problem_text import guessed_problem, inertia_rule
+    from evodesign.guess.problem_text import guessed_problem, inertia_rule
     from evodesign.problem.meshes import with_meshes_beside
     from evodesign.problem.named_files import read_robot
     from evodesign.problem.table import FILL_IN

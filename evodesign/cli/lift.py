@@ -37,10 +37,10 @@ def lift(
     from evodesign.cli.output import console, print_json, show_notes, write_text
     from evodesign.cli.progress import precompute_progress
     from evodesign.cli.tables.lift import lift_tables
+    from evodesign.evaluation.factory import evaluator_of
+    from evodesign.evaluation.lift_json import lift_csv, lift_json
+    from evodesign.evaluation.lifts import Lifts
     from evodesign.problem.build import build_problem
-    from evodesign.problem.factory import evaluator_of
-    from evodesign.problem.lift_json import lift_csv, lift_json
-    from evodesign.problem.lifts import Lifts
     from evodesign.problem.notes import notes
     from evodesign.problem.source import read_source
     from evodesign.tasks.lift import Lift, profile_named

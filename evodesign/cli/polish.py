@@ -12,7 +12,7 @@ from evodesign.cli.options import CORES, Jobs, Json, RunPath
 from evodesign.errors import InputError
 
 if TYPE_CHECKING:
-    from evodesign.problem.polish import Step
+    from evodesign.evaluation.polish import Step
     from evodesign.records import Genome
     from evodesign.runlog.run import RunLog
 
@@ -42,10 +42,10 @@ def polish(
     from evodesign.cli.output import console, print_json, print_lines, show_notes, write_text
     from evodesign.cli.progress import precompute_progress
     from evodesign.cli.tables.polish import polish_json, polish_tables
-    from evodesign.problem import polish as polishing
+    from evodesign.evaluation import polish as polishing
+    from evodesign.evaluation.factory import evaluator_of
     from evodesign.problem.build import build_problem
     from evodesign.problem.designs import designs_text
-    from evodesign.problem.factory import evaluator_of
     from evodesign.runlog.run import read_run
 
     logged = read_run(run)

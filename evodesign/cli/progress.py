@@ -27,7 +27,7 @@ from evodesign.analysis.failures import causes, failures
 from evodesign.analysis.growth import growth
 from evodesign.api.progress_lines import PrecomputeLines, SearchLines
 from evodesign.cli.output import console, heading, rounded, show_notes
-from evodesign.problem.progress import PrecomputeProgress
+from evodesign.evaluation.progress import PrecomputeProgress
 from evodesign.records import Evaluation, Generation, Objective, RunHeader, Sense, Status
 from evodesign.runlog.session_log import Observer
 

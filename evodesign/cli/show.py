@@ -11,7 +11,7 @@ from evodesign.files import make_folder
 
 if TYPE_CHECKING:
     from evodesign.collision.clearance import BodyDistance
-    from evodesign.problem.ergonomics import Ergonomics
+    from evodesign.quantities.ergonomics import Ergonomics
     from evodesign.records import Case
     from evodesign.report.opened_design import OpenedDesign
 
@@ -27,7 +27,7 @@ def show(
     """One design of a run: objectives, parameters, torques, contact forces."""
     from evodesign.cli.output import console, print_json, show_notes
     from evodesign.cli.progress import precompute_progress
-    from evodesign.problem.clearance import distance_json, overlaps
+    from evodesign.evaluation.clearance import distance_json, overlaps
     from evodesign.records import task_names
     from evodesign.report.opened_design import open_design
     from evodesign.runlog.run import read_run
@@ -46,7 +46,7 @@ def show(
         show_notes(f"written: {path}" for path in figures)
     if json:
         from evodesign.analysis.people_spread import spread_json
-        from evodesign.problem.ergonomics import ergonomics_json  # CasADi takes its time to load
+        from evodesign.quantities.ergonomics import ergonomics_json  # CasADi takes its time to load
         from evodesign.report.export.design import design_json
 
         told = design_json(opened.run.header, opened.evaluation, opened.cases, on_front=opened.on_front)

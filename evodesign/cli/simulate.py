@@ -13,9 +13,9 @@ from evodesign.cli.options import CORES, Damaged, Design, Jobs, Json, ProfileNam
 from evodesign.errors import InputError
 
 if TYPE_CHECKING:
+    from evodesign.evaluation.progress import PrecomputeProgress
+    from evodesign.evaluation.simulations import SimulatedCase
     from evodesign.motion.solution import LiftSolution
-    from evodesign.problem.progress import PrecomputeProgress
-    from evodesign.problem.simulations import SimulatedCase
     from evodesign.report.opened_design import OpenedDesign
     from evodesign.tasks import Lift
 
@@ -68,8 +68,8 @@ def simulate(
     from evodesign.cli.output import console, print_json, show_notes
     from evodesign.cli.progress import precompute_progress
     from evodesign.cli.tables.simulation import simulation_table
-    from evodesign.problem.simulation_json import simulations_json
-    from evodesign.problem.simulations import (
+    from evodesign.evaluation.simulation_json import simulations_json
+    from evodesign.evaluation.simulations import (
         HOLD_SECONDS,
         lifts_among,
         picked_cases,
@@ -123,8 +123,8 @@ def _lifts(
     opened: OpenedDesign, asked: Lift, jobs: int, progress: PrecomputeProgress
 ) -> dict[tuple[str, str], LiftSolution]:
     """The lift with every person and load, solved."""
-    from evodesign.problem.factory import evaluator_of
-    from evodesign.problem.lifts import Lifts
+    from evodesign.evaluation.factory import evaluator_of
+    from evodesign.evaluation.lifts import Lifts
 
     problem, values = opened.rebuilt.problem, opened.evaluation.assessment.design
     evaluator = evaluator_of(problem, jobs, progress, [asked])

@@ -10,9 +10,9 @@ def starts(problem: ProblemPath, jobs: Jobs = CORES, json: Json = False) -> None
     from evodesign.cli.output import console, print_json
     from evodesign.cli.progress import precompute_progress
     from evodesign.cli.tables.starts import starts_json, starts_table
+    from evodesign.evaluation.factory import cached_precomputed
     from evodesign.pool.registry import make_pool
     from evodesign.problem.build import build_problem
-    from evodesign.problem.factory import cached_precomputed
     from evodesign.problem.source import read_source
 
     built = build_problem(read_source(problem))

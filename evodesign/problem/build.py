@@ -40,13 +40,13 @@ from evodesign.problem.from_tables import (
 )
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import payloads, refuse_stiff_arms, scene_disturbances
-from evodesign.problem.objectives import SHARED_REACH
 from evodesign.problem.samples import samples_of
 from evodesign.problem.source import decode_toml
 from evodesign.problem.stance_limits import stance_of
 from evodesign.problem.standing_cases import standing_cases
 from evodesign.problem.symmetric import resolved_symmetry
 from evodesign.problem.torque_limits import refuse_unlimited
+from evodesign.quantities.objectives import SHARED_REACH
 from evodesign.records import (
     SUM,
     Case,

@@ -12,16 +12,16 @@ from collections.abc import Mapping, Sequence
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.scene import Agent
-from evodesign.problem.design_result import ObjectiveKind
 from evodesign.problem.file import BoundsTable, ProblemFile
-from evodesign.problem.objectives import (
+from evodesign.problem.torque_limits import PEAK_TORQUE, refuse_unlimited_peak
+from evodesign.problem.unanswered_quantities import refuse_unanswered_quantity
+from evodesign.quantities.design_result import ObjectiveKind
+from evodesign.quantities.objectives import (
     OTHERWISE_CALLED,
     QUANTITIES,
     objective_kind,
     objective_kinds,
 )
-from evodesign.problem.torque_limits import PEAK_TORQUE, refuse_unlimited_peak
-from evodesign.problem.unanswered_quantities import refuse_unanswered_quantity
 from evodesign.records import Constraint, ProblemSource
 from evodesign.violations import BODIES_APART
 

@@ -22,8 +22,8 @@ from evodesign.problem.design_space import (
     density_parameters,
 )
 from evodesign.problem.file import ProblemFile
-from evodesign.problem.objectives import OTHERWISE_CALLED, objective_kind, objective_kinds
 from evodesign.problem.unanswered_quantities import refuse_unanswered_quantity
+from evodesign.quantities.objectives import OTHERWISE_CALLED, objective_kind, objective_kinds
 from evodesign.records import (
     Hold,
     Lift,

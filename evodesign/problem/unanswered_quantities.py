@@ -11,10 +11,10 @@ from evodesign.human.back import FLEXION, LUMBAR
 from evodesign.mechanics.lumbar_load import has_lumbar_disc
 from evodesign.mechanics.scene import Agent
 from evodesign.problem.file import ProblemFile
-from evodesign.problem.hardware_objectives import COST, NEED_ACTUATORS, NEED_WALLS, OF_BEAMS
-from evodesign.problem.motion_objectives import NEED_LIFTS, OF_HOLDS, SPINE
-from evodesign.problem.objectives import NEED_STRENGTHS
-from evodesign.problem.person_objectives import BACK
+from evodesign.quantities.hardware_quantities import COST, NEED_ACTUATORS, NEED_WALLS, OF_BEAMS
+from evodesign.quantities.motion_quantities import NEED_LIFTS, OF_HOLDS, SPINE
+from evodesign.quantities.objectives import NEED_STRENGTHS
+from evodesign.quantities.person_quantities import BACK
 from evodesign.records import ProblemSource
 
 

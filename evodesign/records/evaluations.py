@@ -95,8 +95,8 @@ class Assessment(Record, frozen=True):
     None when a failure left it unknown, and otherwise what designs are ranked by: the metres by which
     required heights are missed, plus for each constraint its excess relative to its bound
     (`evodesign.violations`). `judged` holds the objectives of a design that IPOPT solved, too, to judge the
-    native method (`evodesign.problem.judge`). `gradients` is there where the search asked for them. `rated`
-    holds the rated torques [N m] of sized actuators, by the parameter that is their margin.
+    native method (`evodesign.evaluation.judge`). `gradients` is there where the search asked for them.
+    `rated` holds the rated torques [N m] of sized actuators, by the parameter that is their margin.
     """
 
     design: dict[str, float]

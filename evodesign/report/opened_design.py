@@ -19,11 +19,11 @@ from evodesign.searches.base import JOINT_STARTS
 
 if TYPE_CHECKING:
     from evodesign.collision.clearance import BodyDistance
+    from evodesign.evaluation.evaluate import Evaluator
+    from evodesign.evaluation.progress import PrecomputeProgress
     from evodesign.mechanics.scene import Agent
     from evodesign.problem.build import DesignProblem
-    from evodesign.problem.ergonomics import Ergonomics
-    from evodesign.problem.evaluate import Evaluator
-    from evodesign.problem.progress import PrecomputeProgress
+    from evodesign.quantities.ergonomics import Ergonomics
 
 
 class RebuiltProblem:
@@ -95,13 +95,13 @@ class OpenedDesign:
 
     def bill(self) -> dict[str, Any]:
         """Its bill of materials; empty where the problem has no hardware."""
-        from evodesign.problem.bill import bill_of_materials
+        from evodesign.evaluation.bill import bill_of_materials
 
         return bill_of_materials(self.rebuilt.problem, self.scene_set().robot, self.cases)
 
     def body_distances(self) -> dict[Case, BodyDistance]:
         """The nearest two bodies in each of its postures."""
-        from evodesign.problem.clearance import Clearances
+        from evodesign.evaluation.clearance import Clearances
 
         problem, robot = self.rebuilt.problem, self.scene_set().robot
         found = Clearances(problem.scenes).of(robot, self.cases)
@@ -116,7 +116,7 @@ class OpenedDesign:
         """
         if not self.cases:
             return ()
-        from evodesign.problem.ergonomics import ergonomics  # CasADi takes its time to load
+        from evodesign.quantities.ergonomics import ergonomics  # CasADi takes its time to load
 
         people = self.rebuilt.people
         stranger = next((each.case.person for each in self.cases if each.case.person not in people), None)
@@ -186,8 +186,8 @@ def _solved(
     progress: PrecomputeProgress,
 ) -> list[tuple[CaseDetail, ...]]:
     """The postures of designs of which the log holds none."""
-    from evodesign.problem.baseline import Baseline
-    from evodesign.problem.factory import evaluator_of  # CasADi takes its time to load
+    from evodesign.evaluation.baseline import Baseline
+    from evodesign.evaluation.factory import evaluator_of  # CasADi takes its time to load
 
     for evaluation in bare:
         progress.note(f"the log holds no postures of design {evaluation.number}, so it is solved anew")

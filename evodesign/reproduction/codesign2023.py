@@ -25,13 +25,13 @@ from evodesign.analysis.sequel_claims import (
     search_claim,
 )
 from evodesign.errors import InputError
+from evodesign.evaluation.factory import evaluator_of
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.design_result import DesignResult
 from evodesign.problem.designs import read_designs
-from evodesign.problem.factory import evaluator_of
 from evodesign.problem.named_files import read_text
-from evodesign.problem.objectives import bodies_apart, objective_value
 from evodesign.problem.shipped import SHIPPED
+from evodesign.quantities.design_result import DesignResult
+from evodesign.quantities.objectives import bodies_apart, objective_value
 from evodesign.records import Evaluation
 from evodesign.report.sequel import SequelReproduction
 from evodesign.reproduction.experiment import STRICTER, Experiment, stricter_problem

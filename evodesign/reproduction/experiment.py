@@ -14,9 +14,9 @@ import tomli_w
 
 from evodesign import evolve
 from evodesign.errors import Interrupted
+from evodesign.evaluation.factory import evaluation_factory
 from evodesign.pool.registry import make_pool
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.factory import evaluation_factory
 from evodesign.records import SearchSettings
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run

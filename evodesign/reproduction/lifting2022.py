@@ -20,12 +20,12 @@ from evodesign.analysis.paper_claims import (
     reduction_claim,
     table_claim,
 )
+from evodesign.evaluation.baseline import GENERATION, Baseline, broken_limits, held_at, torque_difference
+from evodesign.evaluation.evaluate import detail_of
+from evodesign.evaluation.factory import evaluator_of
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.formulations.codesign import JointSolution
-from evodesign.problem.baseline import GENERATION, Baseline, broken_limits, held_at, torque_difference
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.evaluate import detail_of
-from evodesign.problem.factory import evaluator_of
 from evodesign.records import Evaluation
 from evodesign.report.reproduction import Found, Published, ReproducedRobot, Reproduction
 from evodesign.report.scene_models import SceneModels

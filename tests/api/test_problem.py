@@ -16,9 +16,9 @@ from evodesign.api.problem import Problem
 from evodesign.api.pymoo_problem import PymooProblem, as_pymoo_problem
 from evodesign.api.run import Run
 from evodesign.errors import InputError
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.source import read_source
 from evodesign.records import FORMAT_VERSION, Evaluation, RunHeader
 from evodesign.runlog.run import RunLog

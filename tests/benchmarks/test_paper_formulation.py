@@ -12,6 +12,7 @@ import pytest
 from benchmarks.paper_formulation import measure_ours
 from benchmarks.paper_posture import PaperProgram, paper_program
 from benchmarks.projected_graph import agent_matrices
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.mechanics.coupled import CoupledModel
 from evodesign.mechanics.projected import contact_wrenches, projected_torques
 from evodesign.mechanics.scene import HUMAN, ROBOT
@@ -20,7 +21,6 @@ from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.terms.base import REGULARISATION, TORQUE_UNIT
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Status
 from tests.mechanics.test_projected import boundless, places_of, postures_of, random_case
 

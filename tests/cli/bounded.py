@@ -39,10 +39,6 @@ if __name__ == "__main__":
     import casadi  # noqa: F401
     import lxml.etree  # noqa: F401
 
-    import evodesign.cli.check
-    import evodesign.problem.inertia_rules
-    import evodesign.problem.mesh_reading
-    import evodesign.problem.preflight  # noqa: F401
     from evodesign.cli import main
 
     _bound()

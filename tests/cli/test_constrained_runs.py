@@ -21,14 +21,14 @@ from evodesign.api.run import Run
 from evodesign.cli.front import front as front_command
 from evodesign.cli.show import show
 from evodesign.cli.tables.design import design_tables
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.evaluation_json import evaluation_json
+from evodesign.evaluation.progress import PrecomputeProgress
 from evodesign.evolve import replay, resume, start
 from evodesign.pool.base import Pool
 from evodesign.pool.registry import make_pool
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.evaluation_json import evaluation_json
-from evodesign.problem.progress import PrecomputeProgress
 from evodesign.records import Evaluation, RunHeader
 from evodesign.report.export.design import ExportedDesign, design_json
 from evodesign.report.export.readme import readme_text

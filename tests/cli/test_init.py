@@ -15,7 +15,7 @@ import trimesh
 
 from evodesign.cli.main import main
 from evodesign.tree.urdf_write import urdf_text
-from tests.problem.guess.humanoid import Build, humanoid
+from tests.guess.humanoid import Build, humanoid
 from tests.robots import HUMANOIDS, NO_HUMANOIDS, SHAPELESS
 
 BUNDLED = sorted((Path(__file__).parents[2] / "problems" / "robots").glob("*.urdf"))

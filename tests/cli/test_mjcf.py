@@ -18,7 +18,7 @@ from evodesign.problem.source import copy_source, read_source
 from evodesign.tree.mjcf_write import mjcf_text
 from evodesign.tree.urdf_write import urdf_text
 from tests.cli.test_init import run
-from tests.problem.guess.humanoid import Build, humanoid
+from tests.guess.humanoid import Build, humanoid
 from tests.tree.small_mjcf import ROBOT, write_small_mjcf
 
 MESH = """

@@ -15,7 +15,7 @@ from evodesign.api import progress_lines
 from evodesign.api.progress_lines import PrecomputeLines
 from evodesign.cli import progress
 from evodesign.cli.progress import PrecomputeBar
-from evodesign.problem.progress import PrecomputeProgress
+from evodesign.evaluation.progress import PrecomputeProgress
 
 PIECES = [
     "starts of the highest load",

@@ -12,7 +12,7 @@ import pytest
 from evodesign.cli.baseline import baseline
 from evodesign.cli.reproduce import reproduce
 from evodesign.errors import InputError
-from evodesign.problem.progress import PrecomputeProgress
+from evodesign.evaluation.progress import PrecomputeProgress
 from evodesign.report.opened_design import open_design
 from evodesign.runlog.run import read_run
 

@@ -23,7 +23,7 @@ WITHOUT_SHARED_MEMORY = (
 )
 EVALUATIONS = 3
 MISTAKEN = """
-from evodesign.problem.objectives import CaseQuantity
+from evodesign.quantities.objectives import CaseQuantity
 
 torque = CaseQuantity("N m", lambda scene, postures: postures["robto"].torque_norm)
 """

@@ -18,8 +18,8 @@ from evodesign.cli.report import report
 from evodesign.cli.show import show
 from evodesign.cli.tables.effort import TITLE
 from evodesign.errors import EvodesignError, InputError, RunError
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.evaluate import Evaluator
 from evodesign.records import (
     Assessment,
     Detail,

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
+from evodesign.evaluation.evaluate import Evaluator, detail_of
 from evodesign.human.endurance import endurance_tables
 from evodesign.human.population import population, population_table
 from evodesign.human.strength import joint_strengths, strength_tables
 from evodesign.mechanics.scene import HUMAN
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.ergonomics import ergonomics
-from evodesign.problem.evaluate import Evaluator, detail_of
+from evodesign.quantities.ergonomics import ergonomics
 
 
 @pytest.fixture(scope="module")

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from evodesign.problem.constraints import constraint_key
-from evodesign.problem.design_result import WORST
-from evodesign.problem.objectives import QUANTITIES, objective_kind, objective_kinds
+from evodesign.quantities.design_result import WORST
+from evodesign.quantities.objectives import QUANTITIES, objective_kind, objective_kinds
 from evodesign.records import Sense
 
 

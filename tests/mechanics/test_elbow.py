@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from evodesign.body.placement import Placement
+from evodesign.guess.problem_text import guessed_problem
 from evodesign.mechanics.elbow import elbow
 from evodesign.mechanics.scene import SIDES, Agent
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.guess.problem_text import guessed_problem
 from evodesign.problem.source import source_of
 from evodesign.tree.frames import link_frames
 from evodesign.tree.urdf_read import InertiaRule, read_urdf

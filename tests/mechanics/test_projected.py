@@ -14,6 +14,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.human.anthropometry import Person
 from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
@@ -37,7 +38,6 @@ from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import whole
 from evodesign.posture.terms.registry import TERMS
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Status
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Tree

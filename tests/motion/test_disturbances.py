@@ -10,6 +10,8 @@ import pinocchio as pin
 import pytest
 from numpy.typing import NDArray
 
+from evodesign.evaluation.lift_json import lift_json
+from evodesign.evaluation.sensitivities import five_point
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, OverCases, PushedAt
 from evodesign.mechanics.scene import SIDES
@@ -24,8 +26,6 @@ from evodesign.posture.check import AgentMotion, Checker
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import symmetric_forms
-from evodesign.problem.lift_json import lift_json
-from evodesign.problem.sensitivities import five_point
 from evodesign.tree.urdf_write import urdf_text
 from tests.motion.lifted import LIFT, Lifted
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError
+from evodesign.evaluation.sensitivities import five_point
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import SIDES
 from evodesign.motion.check import LiftChecker
@@ -28,7 +29,6 @@ from evodesign.posture.formulations.joint import posture_program
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import Form, symmetric_forms
 from evodesign.posture.warm_start import start_from
-from evodesign.problem.sensitivities import five_point
 from evodesign.records import Status
 from evodesign.tasks.lift import LoadProfile
 from evodesign.tree.frames import link_frames

@@ -8,6 +8,7 @@ import msgspec
 import numpy as np
 import pytest
 
+from evodesign.evaluation.precompute import precompute_setting
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.motion import starts
 from evodesign.motion.lifting import MOVED, lift_program, lift_starts
@@ -21,7 +22,6 @@ from evodesign.posture.precompute.pieces import encoded_piece, with_piece
 from evodesign.posture.precompute.plan import Piece, Subject, lift_pieces
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.precompute import precompute_setting
 from evodesign.records import Hold, Status
 from evodesign.tasks import Lift
 from tests.motion.lifted import LIFT, Lifted

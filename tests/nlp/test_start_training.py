@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.nlp.landscape import Landscape, spread_designs
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import ConstraintBlock, Program, Start, Variable
@@ -18,7 +19,6 @@ from evodesign.nlp.start_portfolio import Coverage
 from evodesign.nlp.start_training import Training, _cover, start_portfolio
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Status
 
 FIXED = ({"robot.joints": [0.0]}, {"robot.joints": [0.5]})

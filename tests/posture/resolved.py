@@ -14,6 +14,7 @@ from dataclasses import replace
 import msgspec
 import tomli_w
 
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.mechanics.scene import Scene, StanceLimits
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.formulations.base import Setting
@@ -22,7 +23,6 @@ from evodesign.posture.precompute.meetings import with_meetings
 from evodesign.posture.results import CaseSolution
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.file import CollisionsTable, LimitsTable
 from evodesign.records import ActiveLimit
 

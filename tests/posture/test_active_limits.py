@@ -16,6 +16,7 @@ import pytest
 import tomli_w
 from scipy.optimize import lsq_linear
 
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.hardware.actuators import Actuator
 from evodesign.mechanics.scene import Agent
 from evodesign.nlp.program import Program
@@ -29,8 +30,7 @@ from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.warm_start import start_from
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.design_result import DesignResult
-from evodesign.problem.evaluate import Evaluator
+from evodesign.quantities.design_result import DesignResult
 from evodesign.records import ActiveLimit, CaseDetail, Hold
 from tests.posture.center_of_mass_term import mass_height
 from tests.posture.resolved import (

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from evodesign.design.parameter import ParameterKind
+from evodesign.evaluation.baseline import broken_limits, torque_difference
 from evodesign.mechanics.projected import center_of_pressure
 from evodesign.nlp.method import SolverOptions
 from evodesign.posture.allocation import EffortWeights
@@ -26,7 +27,6 @@ from evodesign.posture.limit_groups import Enforced
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.terms.paper_tasks import Tasks, TaskWeights, density_task, mass_height_task
-from evodesign.problem.baseline import broken_limits, torque_difference
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source
 from evodesign.records import Hold, Status

@@ -16,6 +16,8 @@ from evodesign.collision.pairs import checked_pairs
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, CollisionRules
 from evodesign.collision.scene_bodies import CheckedBodies, SceneBodies
 from evodesign.collision.supports import ConvexShape, shapes_of
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.method import MethodName
 from evodesign.posture.allocation import EffortWeights
@@ -41,8 +43,6 @@ from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.posture.terms.collisions import NUMBERS, directed, placed_pairs
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Status
 from evodesign.tree.kinematics import Pose
 from evodesign.tree.model import Link, Look, Tree

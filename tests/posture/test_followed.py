@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.evaluate import Evaluator
 
 
 def torques(solution: CaseSolution, agent: str) -> np.ndarray:

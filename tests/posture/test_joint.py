@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.design_result import DesignResult
-from evodesign.problem.evaluate import Evaluator
+from evodesign.quantities.design_result import DesignResult
 from evodesign.records import Status
 from tests.posture.violations import violations
 

@@ -7,6 +7,8 @@ from dataclasses import replace
 import pytest
 
 from evodesign.errors import InputError
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.precompute import precompute_setting, refuse_heights
 from evodesign.human.anthropometry import Person
 from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
@@ -19,9 +21,7 @@ from evodesign.posture.precompute.plan import Piece, Subject, stages
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, PersonReach
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.objectives import objective_value
-from evodesign.problem.precompute import precompute_setting, refuse_heights
+from evodesign.quantities.objectives import objective_value
 from evodesign.records import Hold, Objective, Sense
 
 ALONE = ("", "")

@@ -7,12 +7,12 @@ from dataclasses import replace
 import msgspec
 import pytest
 
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST
 from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.designs import read_designs
-from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.file import DescriptorTable
 from evodesign.records import SUM, Hold, Status
 

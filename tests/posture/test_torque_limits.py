@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.design_result import DesignResult
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.sensitivities import Sensitivities
+from evodesign.quantities.design_result import DesignResult
 from evodesign.records import Hold
 from tests.posture.violations import violations
 

@@ -12,14 +12,14 @@ import pytest
 
 from evodesign.api.problem import Problem
 from evodesign.errors import InputError
+from evodesign.evaluation.baseline import refuse_unsuited
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.polish import aim_of, polish
+from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.posture.allocation import EffortWeights
-from evodesign.problem.baseline import refuse_unsuited
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.designs import designs_text, read_designs
-from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.model_json import model_json
-from evodesign.problem.polish import aim_of, polish
-from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Parameter
 
 RIGID = 'grasp = "rigid"\nhand_moment_n_m = 7.0'

@@ -12,9 +12,9 @@ import pytest
 from evodesign.collision.pairs import checked_pairs
 from evodesign.collision.rules import FLOOR, LOAD
 from evodesign.errors import InputError
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.gradients import assessed_gradients
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.gradients import assessed_gradients
 from evodesign.problem.model_json import model_json
 from evodesign.records import ProblemSource, Status
 from evodesign.tree.model import Tree

@@ -9,19 +9,19 @@ import msgspec
 import pytest
 
 from evodesign.errors import InputError
+from evodesign.evaluation.baseline import refuse_unsuited
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.factory import problem_digest
+from evodesign.evaluation.polish import Step, aim_of, polish
+from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.human.anthropometry import Person
 from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
-from evodesign.problem.baseline import refuse_unsuited
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.constraints import constraint_key
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.factory import problem_digest
 from evodesign.problem.model_json import model_json
-from evodesign.problem.motion_objectives import NEED_LIFTS
-from evodesign.problem.objectives import QUANTITIES, objective_kinds, objective_value
-from evodesign.problem.polish import Step, aim_of, polish
-from evodesign.problem.sensitivities import Sensitivities
+from evodesign.quantities.motion_quantities import NEED_LIFTS
+from evodesign.quantities.objectives import QUANTITIES, objective_kinds, objective_value
 from evodesign.records import Constraint, ProblemSource
 from evodesign.runlog.header import differences, header_of
 from evodesign.searches.base import JOINT_STARTS

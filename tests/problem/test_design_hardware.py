@@ -11,17 +11,17 @@ import pytest
 from evodesign.design.parameter import DesignParameter, ParameterKind
 from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.gradients import assessed_gradients
+from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.hardware.actuators import actuator_law
 from evodesign.mechanics.scene import ROBOT
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.design_result import DesignResult
 from evodesign.problem.designs import designs_text, read_designs
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.gradients import assessed_gradients
-from evodesign.problem.hardware_objectives import cost
 from evodesign.problem.model_json import model_json
-from evodesign.problem.objectives import objective_kinds
-from evodesign.problem.sensitivities import Sensitivities
+from evodesign.quantities.design_result import DesignResult
+from evodesign.quantities.hardware_quantities import cost
+from evodesign.quantities.objectives import objective_kinds
 from evodesign.records import Constraint, Hold, Objective, ProblemSource, Sense, design_of
 from evodesign.tree.equip import actuators_of
 from tests.fuzz.input_cases import PROBLEM, TEXTS

@@ -11,11 +11,11 @@ import pinocchio as pin
 import pytest
 
 from evodesign.errors import InputError
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.mechanics.scene import ROBOT
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.terms.floating_base import joint_ranges
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.flexion import bent_ranges
 from evodesign.tree.urdf_read import InertiaRule, read_urdf
 from tests.robots import HUMANOIDS

@@ -7,13 +7,13 @@ import re
 import numpy as np
 import pytest
 
+from evodesign.guess.problem_text import guessed_problem
 from evodesign.problem.build import build_problem
-from evodesign.problem.guess.problem_text import guessed_problem
 from evodesign.problem.inertia_rules import rule_differences
 from evodesign.records import ProblemSource
 from evodesign.tree.urdf_read import InertiaRule
 from evodesign.tree.urdf_write import urdf_text
-from tests.problem.guess.humanoid import Build, humanoid
+from tests.guess.humanoid import Build, humanoid
 
 CENTER = re.compile(r'(<inertial>\s*<origin xyz="0\.0 0\.0 )-0\.19"')
 """That of both thighs."""

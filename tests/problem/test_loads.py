@@ -9,21 +9,21 @@ import numpy as np
 import pytest
 
 from evodesign.errors import InputError
+from evodesign.evaluation.baseline import Baseline
+from evodesign.evaluation.evaluate import Evaluator, case_outcome, detail_of
+from evodesign.evaluation.evaluation_json import evaluation_json
+from evodesign.evaluation.precompute import precompute_setting
+from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.mechanics.disturbance import Disturbance, OverCases, PushedAt
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.postures import Symmetry
 from evodesign.posture.precompute.keys import key_of
 from evodesign.posture.precompute.plan import stages
-from evodesign.problem.baseline import Baseline
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.design_result import DesignResult
-from evodesign.problem.evaluate import Evaluator, case_outcome, detail_of
-from evodesign.problem.evaluation_json import evaluation_json
 from evodesign.problem.left_out import left_out
 from evodesign.problem.notes import notes
-from evodesign.problem.objectives import objective_value
-from evodesign.problem.precompute import precompute_setting
-from evodesign.problem.sensitivities import Sensitivities
+from evodesign.quantities.design_result import DesignResult
+from evodesign.quantities.objectives import objective_value
 from evodesign.records import CaseDetail, CaseOutcome, ProblemSource
 
 TABLES = """

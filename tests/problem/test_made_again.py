@@ -7,9 +7,9 @@ from pathlib import Path
 import msgspec
 import pytest
 
+from evodesign.evaluation.precompute import precompute_setting, staged_pieces
 from evodesign.posture.precompute.keys import key_of
 from evodesign.problem.build import build_problem
-from evodesign.problem.precompute import precompute_setting, staged_pieces
 from evodesign.problem.source import read_source
 from evodesign.records import ProblemSource
 

@@ -9,7 +9,7 @@ import pytest
 
 from evodesign.body.material import CATALOGUE
 from evodesign.errors import InputError
-from evodesign.problem.baseline import Baseline
+from evodesign.evaluation.baseline import Baseline
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.designs import designs_text, read_designs, start_genomes
 from evodesign.problem.model_json import model_json

@@ -11,16 +11,16 @@ import msgspec
 import pytest
 
 from evodesign.errors import InputError
+from evodesign.evaluation.evaluate import AssessmentFactory
+from evodesign.evaluation.factory import Remembering
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.design_result import ObjectiveKind
-from evodesign.problem.evaluate import AssessmentFactory
-from evodesign.problem.factory import Remembering
-from evodesign.problem.objectives import objective_kind, objective_kinds
+from evodesign.quantities.design_result import ObjectiveKind
+from evodesign.quantities.objectives import objective_kind, objective_kinds
 from evodesign.records import SearchSettings
 
 MODULE = """
-from evodesign.problem.objectives import CaseQuantity, ObjectiveKind
+from evodesign.quantities.objectives import CaseQuantity, ObjectiveKind
 
 load = CaseQuantity("kg", lambda scene, postures: scene.payload.mass)
 joints = ObjectiveKind("1", lambda result: float(len(result.robot.joints)))

@@ -10,15 +10,15 @@ import msgspec
 import pytest
 
 from evodesign.errors import InputError
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.human.anthropometry import Person
 from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
 from evodesign.human.strength import joint_strengths
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.design_result import DesignResult
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.objectives import objective_value
+from evodesign.quantities.design_result import DesignResult
+from evodesign.quantities.objectives import objective_value
 from evodesign.records import ProblemSource, Status
 from evodesign.tree.urdf_write import urdf_text
 

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 
 from evodesign.errors import InputError
+from evodesign.evaluation.factory import evaluator_of, problem_digest
+from evodesign.evaluation.precompute import precompute_setting
+from evodesign.evaluation.sampled_designs import sampled_beside, sampled_factory
 from evodesign.human.measured_posture import MEAN_PERSON, drawn_person
 from evodesign.pool.base import Pool
 from evodesign.pool.registry import make_pool
 from evodesign.posture.formulations.base import program_key
 from evodesign.posture.precompute.plan import all_mean_people
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.factory import evaluator_of, problem_digest
-from evodesign.problem.precompute import precompute_setting
-from evodesign.problem.sampled_designs import sampled_beside, sampled_factory
 from evodesign.problem.samples import refuse_unsampled, sampled_source
 from evodesign.problem.source import source_of
 from evodesign.records import ProblemSource

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.factory import evaluator_of
+from evodesign.guess.problem_text import guessed_problem
 from evodesign.problem.build import build_problem
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.factory import evaluator_of
-from evodesign.problem.guess.problem_text import guessed_problem
 from evodesign.problem.source import read_source, source_of
 from evodesign.records import CaseDetail
 from evodesign.tree.urdf_read import InertiaRule, read_urdf

@@ -14,7 +14,7 @@ import pinocchio
 import pytest
 
 from evodesign.body.placement import Placement
-from evodesign.problem.guess.problem_text import guessed_problem
+from evodesign.guess.problem_text import guessed_problem
 from evodesign.tree.frames import link_frames
 from evodesign.tree.mjcf_read import translated
 from evodesign.tree.model import Tree

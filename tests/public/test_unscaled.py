@@ -14,8 +14,8 @@ import pinocchio as pin
 import pytest
 from lxml import etree
 
+from evodesign.guess.problem_text import guessed_problem
 from evodesign.problem.build import build_problem
-from evodesign.problem.guess.problem_text import guessed_problem
 from evodesign.problem.source import source_of
 from evodesign.tree.model import Tree
 from evodesign.tree.resize import resize

@@ -12,9 +12,9 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.posture.check import TOLERANCE
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.notes import notes
 from evodesign.records import ProblemSource, Status
 from evodesign.tree.resize import resize

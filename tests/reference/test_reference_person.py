@@ -24,13 +24,13 @@ import pytest
 
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Sphere
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.human.anthropometry import Person
 from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import DEFAULT_JOINTS, human_tree
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import HUMAN, SIDES
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.source import read_source
 from evodesign.records import ProblemSource, Status
 from evodesign.tree.model import Look, Tree

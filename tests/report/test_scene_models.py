@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from evodesign.body.placement import Placement
+from evodesign.evaluation.logged_posture import logged_posture
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES
 from evodesign.posture.check import AgentModel
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.logged_posture import logged_posture
 from evodesign.report.scene_models import LOAD, ContactWrench, PlacedScene, placed_scene
 from evodesign.tree.frames import link_frames
 from evodesign.tree.kinematics import Pose, axis_rotation, euler_rotation, forward

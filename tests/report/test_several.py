@@ -19,12 +19,12 @@ from mcap.reader import make_reader
 
 import evodesign
 from evodesign.analysis.conditions import conditions, meeting, quantities
+from evodesign.evaluation.logged_posture import logged_posture
+from evodesign.evaluation.progress import SILENT
 from evodesign.human.body import human_tree
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.check import AgentModel
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.logged_posture import logged_posture
-from evodesign.problem.progress import SILENT
 from evodesign.records import Detail
 from evodesign.report.export.design import ExportedDesign
 from evodesign.report.export.folder import export_design

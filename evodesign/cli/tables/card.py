@@ -29,7 +29,7 @@ from evodesign.report.opened_design import OpenedDesign
 from evodesign.violations import reason_of_infeasibility
 
 if TYPE_CHECKING:
-    from evodesign.problem.ergonomics import Ergonomics
+    from evodesign.quantities.ergonomics import Ergonomics
 
 BAR = 16
 """Columns of a parameter's bar."""

@@ -14,13 +14,13 @@ from evodesign.cli.tables.effort import effort_table
 from evodesign.cli.tables.limits import TITLE, limits_table
 from evodesign.cli.tables.people import people_table
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
+from evodesign.evaluation.bill import bill_of_materials
+from evodesign.evaluation.evaluate import detail_of
+from evodesign.evaluation.sensitivities import ObjectiveSensitivity
 from evodesign.mechanics.scene import HUMAN
-from evodesign.problem.bill import bill_of_materials
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.design_result import DesignResult
-from evodesign.problem.ergonomics import ergonomics
-from evodesign.problem.evaluate import detail_of
-from evodesign.problem.sensitivities import ObjectiveSensitivity
+from evodesign.quantities.design_result import DesignResult
+from evodesign.quantities.ergonomics import ergonomics
 from evodesign.records import Assessment, CaseDetail
 
 STRONGEST = 4

@@ -13,7 +13,7 @@ from evodesign.human.back import ACTION_LIMIT
 
 if TYPE_CHECKING:
     from evodesign.human.endurance import Endurance
-    from evodesign.problem.ergonomics import Ergonomics
+    from evodesign.quantities.ergonomics import Ergonomics
 
 TITLE = "the person's back, holding time and posture scores"
 TITLE_OF_SEVERAL = "back, holding time and posture scores of each person's hardest postures"

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from evodesign.cli.output import markup
 from evodesign.cli.tables.table import FittedTable, names, titled
-from evodesign.problem.guess.problem_text import Guess
+from evodesign.guess.problem_text import Guess
 
 
 def guesses_table(guesses: Iterable[Guess], unknown: str) -> FittedTable:

@@ -11,7 +11,7 @@ from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import Case
 
 if TYPE_CHECKING:
-    from evodesign.problem.ergonomics import Ergonomics
+    from evodesign.quantities.ergonomics import Ergonomics
 
 Asked = tuple[Case, "Ergonomics"]
 """A case, and what its posture asks of the person."""

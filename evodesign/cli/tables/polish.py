@@ -10,8 +10,8 @@ from rich.markup import escape
 from evodesign.cli.output import heading, rounded
 from evodesign.cli.tables.constraints import constraints_table
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
+from evodesign.evaluation.polish import Aim, Polished
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.polish import Aim, Polished
 from evodesign.records import Assessment
 from evodesign.runlog.run import RunLog
 from evodesign.violations import constraints_json

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from evodesign.human.back import ACTION_LIMIT
 from evodesign.mechanics.scene import HUMAN, Scene, scene_of
-from evodesign.problem.ergonomics import ergonomics
+from evodesign.quantities.ergonomics import ergonomics
 from evodesign.records import CaseDetail
 from evodesign.report.page.content import EffortContent
 

@@ -16,14 +16,14 @@ from evodesign.analysis.importance import Importance, importance, slices
 from evodesign.analysis.importance_json import importance_json, slices_json
 from evodesign.analysis.people_spread import all_spreads_json, spread_of_run
 from evodesign.errors import EvodesignError, RunError
+from evodesign.evaluation.clearance import Clearances
+from evodesign.evaluation.factory import evaluator_of
+from evodesign.evaluation.progress import PrecomputeProgress
+from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.clearance import Clearances
 from evodesign.problem.designs import unscaled_genome
-from evodesign.problem.factory import evaluator_of
 from evodesign.problem.left_out import left_out
 from evodesign.problem.notes import assumed_heights
-from evodesign.problem.progress import PrecomputeProgress
-from evodesign.problem.sensitivities import Sensitivities
 from evodesign.records import Detail, Evaluation, Hold, Lift, Task, evenly
 from evodesign.report.page import marks
 from evodesign.report.page.bodies import bodies, changes

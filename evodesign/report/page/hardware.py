@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from evodesign.problem.bill import bill_of_materials
+from evodesign.evaluation.bill import bill_of_materials
 from evodesign.problem.build import DesignProblem
 from evodesign.records import CaseDetail
 from evodesign.report.page.content import ActuatorContent, HardwareContent, WallContent

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 
+from evodesign.evaluation.logged_posture import logged_posture
 from evodesign.mechanics.floating_base import ROOT
 from evodesign.mechanics.scene import Agent, Scene
 from evodesign.posture.check import AgentModel
 from evodesign.posture.terms.torque import asked
-from evodesign.problem.logged_posture import logged_posture
 from evodesign.records import CaseDetail, InstantDetail, Lift
 from evodesign.tree.model import Tree
 

@@ -14,8 +14,8 @@ from scipy.spatial.transform import Rotation
 
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError
+from evodesign.evaluation.simulations import SimulatedCase
 from evodesign.mechanics.scene import SIDES, Agent
-from evodesign.problem.simulations import SimulatedCase
 from evodesign.records import AgentDetail, Case, CaseDetail, InstantDetail
 from evodesign.report.replay.recording import NANOSECONDS, Frame, write_frames
 from evodesign.report.scene_models import SceneSet, placed_scene

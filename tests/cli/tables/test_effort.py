@@ -11,9 +11,9 @@ from rich.console import Console
 from evodesign.cli.tables.effort import effort_table
 from evodesign.human.back import ACTION_LIMIT
 from evodesign.human.endurance import endurance
-from evodesign.problem.ergonomics import Ergonomics, ergonomics
+from evodesign.quantities.ergonomics import Ergonomics, ergonomics
 from evodesign.records import Case, Hold
-from tests.problem.test_ergonomics import PERSON, posture
+from tests.quantities.test_ergonomics import PERSON, posture
 
 
 def printed(asked: Ergonomics, width: int = 110, person: str = "") -> str:

@@ -9,9 +9,9 @@ import pytest
 from rich.console import Console
 
 from evodesign.cli.tables.people import hardest_cases, people_table, person_table
-from evodesign.problem.ergonomics import ergonomics
+from evodesign.quantities.ergonomics import ergonomics
 from evodesign.records import Case, Hold
-from tests.problem.test_ergonomics import PERSON, posture
+from tests.quantities.test_ergonomics import PERSON, posture
 
 REACHING = {"jLeftShoulder_rotz": -1.57, "jRightShoulder_rotz": 1.57}
 

@@ -10,8 +10,8 @@ import pytest
 
 from evodesign.analysis.front import RunningFront, front
 from evodesign.analysis.hypervolume import best, hypervolume, reference_point
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.evaluate import Evaluator
 from evodesign.records import Detail, Evaluation, Front, Generation
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run

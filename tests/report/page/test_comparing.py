@@ -13,8 +13,8 @@ import pytest
 from mcap.reader import make_reader
 
 from evodesign.analysis.front import front
+from evodesign.evaluation.progress import SILENT
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.progress import SILENT
 from evodesign.report.export.design import postures_csv
 from evodesign.report.opened_design import open_design
 from evodesign.runlog.run import RunLog

@@ -13,8 +13,8 @@ import pytest
 from evodesign.analysis.active_limits import frequent_limits
 from evodesign.analysis.front import front
 from evodesign.errors import InputError
+from evodesign.evaluation.clearance import Clearances
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.clearance import Clearances
 from evodesign.problem.left_out import left_out
 from evodesign.records import Objective, Sense
 from evodesign.report.page import gather, page_content, page_html, postures

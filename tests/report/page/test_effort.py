@@ -13,7 +13,7 @@ import pytest
 from evodesign.human.back import ACTION_LIMIT
 from evodesign.mechanics.scene import HUMAN
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.ergonomics import ergonomics
+from evodesign.quantities.ergonomics import ergonomics
 from evodesign.report.page import page_content, page_html
 from evodesign.runlog.run import RunLog
 from tests.report.page.chromium import Tab, browser

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.progress import SILENT
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.evaluate import Evaluator
-from evodesign.problem.progress import SILENT
 from evodesign.records import Evaluation
 from evodesign.report.page.gather import gradients_of
 from evodesign.runlog.header import header_of

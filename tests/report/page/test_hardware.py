@@ -8,9 +8,9 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from evodesign.problem.bill import bill_of_materials
+from evodesign.evaluation.bill import bill_of_materials
+from evodesign.evaluation.evaluate import Evaluator
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.evaluate import Evaluator
 from evodesign.problem.source import read_source
 from evodesign.records import Detail, Evaluation, Hold
 from evodesign.report.page import page_content, page_html

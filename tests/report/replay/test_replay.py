@@ -18,9 +18,9 @@ from google.protobuf.message_factory import GetMessages
 from mcap.reader import make_reader
 
 from evodesign.body.shape import Box, Cylinder, Sphere
+from evodesign.evaluation.logged_posture import logged_posture
 from evodesign.posture.check import AgentModel
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.logged_posture import logged_posture
 from evodesign.records import Detail
 from evodesign.report.replay.layout import layout_text
 from evodesign.report.replay.messages import METRES_PER_NEWTON, METRES_PER_NEWTON_METRE

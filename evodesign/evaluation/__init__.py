@@ -1,0 +1,1 @@
+"""One design evaluated: made ready, sized, solved, judged, with its gradients."""

@@ -1,0 +1,142 @@
+"""Designs whose actuators are sized by what is asked of them.
+
+    rated torque of a group = margin x demand on it
+
+An actuator is part of what the others carry, so postures and sizes are found in rounds (`hardware.sizing`).
+Which postures are best depends on the sizes, so one start of each case tells first about which ones will be
+asked for. The first round begins there as any evaluation; each further one moves the robot's postures of the
+last to sizes that would meet the demand if postures stayed: torques are about linear then in the masses of
+actuators (`mechanics.added_mass`). What is checked, and solved to the end, are the postures of the last
+sizes. If the check finds better ones, which ask for other actuators, the rounds begin again from those.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Protocol
+
+from evodesign.design.space import TYPICAL, DesignSpace
+from evodesign.hardware.sizing import TOLERANCE, Sizing, sized, sizes_met
+from evodesign.posture.results import CaseSolution
+from evodesign.quantities.demand import Demand, SizedRobot, demand_of
+from evodesign.quantities.design_result import DesignResult
+from evodesign.records import Status
+
+BOUNDS = (1.0, 300.0)
+"""Smallest and largest rated torque [N m] that an actuator is made for: somewhat beyond the catalogue."""
+
+BEGINNINGS = 3
+"""How often the rounds begin."""
+
+NOTHING_KNOWN: Mapping[str, float] = {}
+
+Cases = tuple[CaseSolution, ...]
+
+
+class SizingRounds(Protocol):
+    """What is asked of a design's postures, round after round; values have rated torques for margins."""
+
+    def sketched(self, values: Sequence[float]) -> Cases:
+        """Postures of every case from one start each, not checked; none where they tell too little."""
+
+    def first(self, values: Sequence[float]) -> Cases:
+        """Postures of every case, not checked."""
+
+    def following(self, values: Sequence[float], before: Cases) -> Cases:
+        """Those near the postures of another round, not checked."""
+
+    def result(self, values: Sequence[float], before: Cases = ()) -> DesignResult:
+        """The checked results near them; cases that have no posture there have none."""
+
+
+def usual_values(
+    space: DesignSpace, values: Sequence[float], usual: Mapping[str, float] = NOTHING_KNOWN
+) -> list[float]:
+    """The values of a design with rated torques [N m] for margins, as another design asks for them.
+
+    Args:
+        space: of the problem.
+        values: of the design.
+        usual: what the other design asks of each group [N m].
+    """
+    found = list(values)
+    for place in space.margins:
+        found[place] *= usual.get(space.parameters[place].name, TYPICAL)
+    return found
+
+
+def sized_result(
+    space: DesignSpace,
+    values: Sequence[float],
+    robot: SizedRobot,
+    rounds: SizingRounds,
+    usual: Mapping[str, float] = NOTHING_KNOWN,
+) -> DesignResult:
+    """The results of a design with sized actuators.
+
+    Args:
+        space: of the problem.
+        values: of the design.
+        robot: of the design.
+        rounds: its postures with any sizes.
+        usual: what another design asks of each group [N m], for the first round.
+    """
+    groups = {space.parameters[place].name: place for place in space.margins}
+    asked: list[Demand | str] = []
+    cases: list[Cases] = []
+
+    def given(sizes: Mapping[str, float]) -> list[float]:
+        places = {place: sizes[name] for name, place in groups.items()}
+        return [places.get(place, value) for place, value in enumerate(values)]
+
+    def demand(sizes: Mapping[str, float]) -> Mapping[str, float] | None:
+        now = given(sizes)
+        cases.append(rounds.following(now, cases[-1]) if cases else rounds.first(now))
+        before = asked[-1] if asked else None
+        found = demand_of(space, now, robot, cases[-1], before if isinstance(before, Demand) else None)
+        asked.append(found)
+        return None if isinstance(found, str) else found.at(sizes)
+
+    def predict(sizes: Mapping[str, float]) -> Mapping[str, float]:
+        latest = asked[-1]
+        return latest.at(sizes) if isinstance(latest, Demand) else sizes
+
+    margins = {name: values[place] for name, place in groups.items()}
+    bounds = dict.fromkeys(groups, BOUNDS)
+    first = usual_values(space, values, usual)
+    start: Mapping[str, float] = {name: first[place] for name, place in groups.items()}
+    sketch = rounds.sketched(first)
+    told = demand_of(space, first, robot, sketch) if sketch else ""
+    if isinstance(told, Demand):
+        start = sizes_met(told.at, start, margins, bounds)
+    for _ in range(BEGINNINGS):
+        sizing = sized(demand, start, margins, bounds, predict)
+        ended, latest = given(sizing.sizes), asked[-1]
+        if sizing.status is not Status.SOLVED and all(each.solved for each in cases[-1]):
+            reason = latest if isinstance(latest, str) else sizing.reason
+            return rounds.result(ended, _failed(cases[-1], sizing, reason))
+        result = rounds.result(ended, cases[-1])
+        if not all(each.solved for each in result.cases):
+            return result
+        final = latest.of_lift(result.cases) if isinstance(latest, Demand) else None
+        if final is None:
+            break
+        wanted = _wanted(final, sizing, margins)
+        if replace(sizing, wanted=wanted).change <= 2.0 * TOLERANCE:
+            return replace(result, demand=final)
+        start = wanted
+        cases.append(result.cases)
+        asked.append(final)
+    lost = replace(sizing, status=Status.ITERATION_LIMIT)
+    return replace(result, cases=_failed(result.cases, lost, "checked postures ask for other actuators"))
+
+
+def _wanted(demand: Demand, sizing: Sizing, margins: Mapping[str, float]) -> Mapping[str, float]:
+    """The sizes that a demand around those of the last round asks for."""
+    asked = demand.at(sizing.sizes)
+    return {name: min(max(margin * asked[name], BOUNDS[0]), BOUNDS[1]) for name, margin in margins.items()}
+
+
+def _failed(cases: Cases, sizing: Sizing, reason: str) -> Cases:
+    return tuple(CaseSolution(each.case, sizing.status, reason) for each in cases)

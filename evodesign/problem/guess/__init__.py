@@ -1,1 +1,0 @@
-"""What a robot's file does not say and a problem needs: guessed from geometry, with reasons."""

@@ -1,0 +1,1 @@
+"""What can be an objective or a constraint: quantities of a design, by name."""

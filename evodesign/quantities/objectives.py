@@ -1,0 +1,343 @@
+"""Objectives: pure functions of a design's results.
+
+A case is a person with a load at a task, undisturbed or under one of the problem's disturbances. A quantity
+has a value in every case; an objective is its mean over the cases, its largest value, or a quantile, so that
+a front may be asked to hold for everyone and not only on average. The way stands before the quantity's name:
+`human_torque` is the mean, and there are `worst_human_torque` and `q90_human_torque`. In a lift a quantity
+has a value at every instant: its mean over time is the value of the case, and the largest of all instants is
+the `worst_` one.
+
+Adding one is a function here and a line in `QUANTITIES`, for a value of every case, or in `WHOLE`, for one of
+the design; the problem file then knows its name. Without touching the package, one is a `CaseQuantity` or an
+`ObjectiveKind` in a module of its own, which every process imports, and its name is `MODULE:NAME` (see
+`outside`). What does
+not exist (no posture, no reach) is absent, never large.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from evodesign.collision.zero_posture import built_in_slack
+from evodesign.errors import InputError
+from evodesign.human.strength import largest_relative_torque
+from evodesign.mechanics.balance import standing_height_of_mass
+from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
+from evodesign.motion.solution import MotionCase
+from evodesign.outside import imported, is_outside
+from evodesign.posture.results import AgentPosture
+from evodesign.posture.terms.base import TORQUE_UNIT
+from evodesign.posture.terms.paper_tasks import pressure_task
+from evodesign.quantities.design_result import (
+    WORST,
+    ByTorque,
+    CaseQuantity,
+    DesignResult,
+    ObjectiveKind,
+    aggregate,
+    largest_value,
+    values_over_cases,
+    values_over_instants,
+)
+from evodesign.quantities.hardware_quantities import (
+    actuator_mass,
+    cost,
+    hand_deflection,
+    holding_power,
+    least_safety_factor,
+    power_by_torque,
+    torque_share,
+)
+from evodesign.quantities.motion_quantities import (
+    ENDURANCE,
+    ENERGY,
+    LEAST_TIME,
+    POWER,
+    SPINE,
+    l5s1_moment,
+    mean_over_time,
+    moment_by_torque,
+    motion_power_by_speed,
+    motion_power_by_torque,
+    robot_power,
+)
+from evodesign.quantities.person_quantities import (
+    BACK,
+    back_compression,
+    compression_by_posture,
+    compression_by_torque,
+    endurance_seconds,
+    human_load_torque,
+    load_torque_by_posture,
+)
+from evodesign.records import Constraint, Lift, Objective
+from evodesign.violations import BODIES_APART
+
+
+def _by_norm(agent: str) -> ByTorque:
+    """D |tau| / d tau = tau / |tau|."""
+
+    def by_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, dict[str, float]]:
+        norm = postures[agent].torque_norm or 1.0
+        return {agent: {joint: torque / norm for joint, torque in postures[agent].torques.items()}}
+
+    return by_torque
+
+
+def _by_peak(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, dict[str, float]]:
+    """The largest share moves with one joint."""
+    torques, limits = postures[ROBOT].torques, scene.robot.torque_limits
+    joint = max(scene.robot.joints, key=lambda name: abs(torques[name]) / limits[name])
+    return {ROBOT: {joint: float(np.copysign(1.0 / limits[joint], torques[joint]))}}
+
+
+def _by_effort(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, dict[str, float]]:
+    """As the peak, for the person."""
+    hardest = largest_relative_torque(postures[HUMAN].torques, scene.human.strengths)
+    return {HUMAN: {hardest.joint: hardest.share / hardest.torque} if hardest and hardest.torque else {}}
+
+
+def robot_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
+    """The robot's |tau|_2 [N m] (paper, task t1)."""
+    return postures[ROBOT].torque_norm
+
+
+def human_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
+    """The person's |tau|_2 [N m] (paper, task t1)."""
+    return postures[HUMAN].torque_norm
+
+
+def peak_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
+    """The robot's largest |tau| over its limit, over the joints: 1 for a joint at its limit."""
+    torques, limits = postures[ROBOT].torques, scene.robot.torque_limits
+    return max(abs(torques[joint]) / limits[joint] for joint in scene.robot.joints)
+
+
+def human_effort(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
+    """The person's largest |torque| over the joint's strength in that direction; 1 is all that they have."""
+    strain = largest_relative_torque(postures[HUMAN].torques, scene.human.strengths)
+    return 0.0 if strain is None else strain.share
+
+
+def reach_height(result: DesignResult) -> float | None:
+    """Highest load that the robot can hold [m]."""
+    return result.reach.highest
+
+
+def shared_reach_height(result: DesignResult) -> float | None:
+    """Highest load that the robot and all of the people can hold [m]."""
+    if result.reach.highest is None or result.people_highest is None:
+        return None
+    return min(result.reach.highest, result.people_highest)
+
+
+def bodies_apart(result: DesignResult) -> float | None:
+    """By how much bodies that designs may bring together are farther apart than asked, joints at zero [m].
+
+    None where bodies may pass through anything, or where no design brings any together.
+    """
+    found = built_in_slack(result.tree, result.robot.collisions)
+    return None if found is None else found[0]
+
+
+def mass(result: DesignResult) -> float:
+    """Mass of the robot [kg]."""
+    return float(result.tree.mass)
+
+
+def mass_of_actuators(result: DesignResult) -> float:
+    """Mass of the robot's actuators [kg]."""
+    return actuator_mass(result.tree)
+
+
+def torque_margin(result: DesignResult) -> float | None:
+    """The least rated torque over |tau|, over actuators and cases; None also where nothing is held.
+
+    Where the robot stands alone, the peak torque over the case's factor is in the place of rated torque.
+    """
+    share = largest_value(torque_share, result)
+    alone = [] if result.standing is None else result.standing.shares(result.tree)
+    if share is None or alone is None or max(share, *alone, 0.0) <= 0.0:
+        return None
+    return 1.0 / max(share, *alone, 0.0)
+
+
+def safety_of_links(result: DesignResult) -> float | None:
+    """The least safety factor of the robot's links, over all cases; None without walls."""
+    factors = values_over_instants(least_safety_factor, result)
+    least = math.inf if factors is None else min(each for values in factors for each in values)
+    return least if least < math.inf else None
+
+
+def energy(result: DesignResult) -> float | None:
+    """What the robot's joints and actuators draw in a lift [J], the mean over all lifts; None without any."""
+    found = values_over_instants(robot_power, result)
+    if found is None:
+        return None
+    lifts = [
+        mean_over_time(solution.times, values) * solution.case.task.seconds
+        for (solution, _), values in zip(result.every_case(), found, strict=True)
+        if isinstance(solution.case.task, Lift)
+    ]
+    return float(np.mean(lifts)) if lifts else None
+
+
+def least_times(result: DesignResult) -> list[float] | None:
+    """The least time of every lift [s]; None without any, and where one is not known."""
+    lifts = [solution for solution in result.cases if isinstance(solution.case.task, Lift)]
+    found = [each.least_seconds for each in lifts if isinstance(each, MotionCase) and each.solved]
+    known = [seconds for seconds in found if seconds is not None]
+    return known if known and len(known) == len(lifts) else None
+
+
+def mean_least_time(result: DesignResult) -> float | None:
+    """The mean over all lifts of the least time in which they can be done [s]."""
+    found = least_times(result)
+    return None if found is None else float(np.mean(found))
+
+
+def worst_least_time(result: DesignResult) -> float | None:
+    """The largest of them [s]."""
+    found = least_times(result)
+    return None if found is None else max(found)
+
+
+def com_height(result: DesignResult) -> float:
+    """Height of the robot's centre of mass above its soles, all joints at zero [m] (paper, task t4)."""
+    return float(standing_height_of_mass(result.tree, tuple(result.robot.soles.values())))
+
+
+def paper_cost(result: DesignResult) -> float | None:
+    """W1 t1 + W3 t3 of all undisturbed cases + W2 t2 + W4 t4 [(10 N m)^2], the paper's cost (Eq. 14)."""
+    robot, human = (values_over_cases(t1, result, disturbed=False) for t1 in (robot_torque, human_torque))
+    if robot is None or human is None:
+        return None
+    efforts, tasks = result.paper.efforts, result.paper.tasks
+    strain = efforts.robot * np.square(robot) + efforts.human * np.square(human)
+    cost = tasks.weights.torque * strain.sum() / TORQUE_UNIT**2
+    cost += tasks.of_design(result.space, result.values, result.robot, result.tree)
+    if tasks.weights.center_of_pressure:
+        feet = [posture.foot_wrenches for case in result.cases for posture in case.postures.values()]
+        cost += tasks.weights.center_of_pressure * sum(pressure_task(wrenches) for wrenches in feet)
+    return float(cost)
+
+
+def paper2023_cost(result: DesignResult) -> float | None:
+    """The largest sum of torque norms over the heights, of all people with all loads [N m].
+
+        max over pairs of  sum over heights of  |tau_r|_2 / 160 + |tau_h|_2
+
+    The sequel's fitness is 100 over it: the robot's torques count at the motors, whose ratio is 160 (its
+    models M and L). Source: Sartore et al. 2023, published code (`GA_with_PyGad.py`).
+    """
+    if not all(solution.solved for solution in result.cases):
+        return None
+    sums: dict[tuple[str, str], float] = {}
+    for solution in result.cases:
+        postures, pair = solution.postures, solution.case.pair
+        norms = postures[ROBOT].torque_norm / MOTOR_RATIO + postures[HUMAN].torque_norm
+        sums[pair] = sums.get(pair, 0.0) + norms
+    return max(sums.values())
+
+
+MOTOR_RATIO = 160.0
+"""Turns of a motor M or L per turn of its joint in the published code of Sartore et al. 2023."""
+
+HUMAN_EFFORT = "human_effort"
+"""The hardest joint's share of the person's strength."""
+
+NEED_STRENGTHS = (HUMAN_EFFORT, ENDURANCE)
+"""How the names of quantities end that need people of known strength."""
+
+QUANTITIES: Mapping[str, CaseQuantity] = {
+    "robot_torque": CaseQuantity("N m", robot_torque, _by_norm(ROBOT)),
+    "human_torque": CaseQuantity("N m", human_torque, _by_norm(HUMAN)),
+    "peak_torque": CaseQuantity("1", peak_torque, _by_peak),
+    HUMAN_EFFORT: CaseQuantity("1", human_effort, _by_effort),
+    "holding_power": CaseQuantity("W", holding_power, power_by_torque),
+    "hand_deflection": CaseQuantity("mm", hand_deflection),
+    POWER: CaseQuantity("W", robot_power, motion_power_by_torque, motion_power_by_speed),
+    SPINE: CaseQuantity("N m", l5s1_moment, moment_by_torque),
+    "human_load_torque": CaseQuantity("N m", human_load_torque, by_posture=load_torque_by_posture),
+    BACK: CaseQuantity("N", back_compression, compression_by_torque, by_posture=compression_by_posture),
+}
+"""Values of single cases; an objective is the mean of one, or its `worst_` or `q90_`."""
+
+REACH, SHARED_REACH = "reach_height", "shared_reach_height"
+
+WHOLE: Mapping[str, ObjectiveKind] = {
+    REACH: ObjectiveKind("m", reach_height),
+    SHARED_REACH: ObjectiveKind("m", shared_reach_height),
+    BODIES_APART: ObjectiveKind("m", bodies_apart),
+    "mass": ObjectiveKind("kg", mass),
+    "actuator_mass": ObjectiveKind("kg", mass_of_actuators),
+    "cost": ObjectiveKind("EUR", lambda result: cost(result.tree)),
+    ENDURANCE: ObjectiveKind("s", endurance_seconds),
+    "torque_margin": ObjectiveKind("1", torque_margin),
+    "least_safety_factor": ObjectiveKind("1", safety_of_links),
+    "com_height": ObjectiveKind("m", com_height),
+    ENERGY: ObjectiveKind("J", energy),
+    LEAST_TIME: ObjectiveKind("s", mean_least_time),
+    f"{WORST}{LEAST_TIME}": ObjectiveKind("s", worst_least_time),
+    "paper_cost": ObjectiveKind("(10 N m)^2", paper_cost),
+    "paper2023_cost": ObjectiveKind("N m", paper2023_cost),
+}
+"""Values of a design as a whole."""
+
+
+OTHERWISE_CALLED: Mapping[str, str] = {"peak_power": f"{WORST}{POWER}"}
+"""What somebody means who asks for a quantity by a name that it might have."""
+
+
+def objective_kinds() -> Mapping[str, ObjectiveKind]:
+    """Objectives by name; quantiles, of which there are many, are left to `objective_kind`."""
+    ways = ((over, name) for over in ("", WORST) for name in QUANTITIES)
+    return {**{f"{over}{name}": aggregate(QUANTITIES[name], over) for over, name in ways}, **WHOLE}
+
+
+def objective_kind(name: str) -> ObjectiveKind | None:
+    """The objective of a name, such as `robot_torque`, `worst_robot_torque` or `q90_robot_torque`.
+
+    Raises:
+        InputError: a name of the form `MODULE:NAME` that is no objective, or may not be imported.
+    """
+    way, quantity = split_name(name)
+    if is_outside(quantity):
+        found = imported(quantity, "objectives", "")
+        if isinstance(found, ObjectiveKind) and not way:
+            return found
+        if isinstance(found, CaseQuantity):
+            return aggregate(found, way)
+        wanted = "a CaseQuantity" if way else "a CaseQuantity or an ObjectiveKind"
+        raise InputError("objectives", "", wanted, f"'{quantity}', which is {type(found).__name__}")
+    if way in ("", WORST) or quantity not in QUANTITIES:
+        return objective_kinds().get(name)
+    return aggregate(QUANTITIES[quantity], way)
+
+
+def split_name(name: str) -> tuple[str, str]:
+    """How an objective is taken over the cases (`worst_`, `q90_` or nothing), and of which quantity."""
+    match = re.fullmatch(rf"({WORST}|q[1-9]\d?_|)(.+)", name)
+    return (match[1], match[2]) if match else ("", name)
+
+
+def objective_values(quantities: Sequence[Objective | Constraint], result: DesignResult) -> dict[str, float]:
+    """Natural values of objectives or constrained quantities, by name, without those that do not exist."""
+    found = {quantity.name: objective_value(quantity.name, result) for quantity in quantities}
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def objective_value(name: str, result: DesignResult) -> float | None:
+    """An objective's value; None where it does not exist.
+
+    Raises:
+        KeyError: no objective has this name.
+    """
+    kind = objective_kind(name)
+    if kind is None:
+        raise KeyError(name)
+    return kind.value(result)

@@ -1,0 +1,94 @@
+"""Quantities of what a task asks of the person, beyond the torques of the posture.
+
+    human_load_torque   |torques less those of the same person in the same posture with empty hands| [N m]
+    back_compression    of the disc between the fifth lumbar vertebra and the sacrum [N]
+    endurance_s         how long the posture can be held [s], the least of all cases
+
+The formulas are those of `mechanics.load_torques` and `mechanics.lumbar_load`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from evodesign.human.back import FLEXION, MUSCLE_LEVER
+from evodesign.human.endurance import endurance
+from evodesign.mechanics.load_torques import LoadTorques, load_torques
+from evodesign.mechanics.lumbar_load import LumbarLoad, lumbar_load
+from evodesign.mechanics.scene import HUMAN, SIDES, Agent, Scene
+from evodesign.posture.results import AgentPosture
+from evodesign.quantities.design_result import CaseQuantity, DesignResult, PostureSlopes, values_over_instants
+
+BACK = "back_compression"
+"""The quantity that needs people with a joint at L5/S1."""
+
+
+def added_by_load(person: Agent, posture: AgentPosture) -> LoadTorques:
+    """What the load adds to a person's torques (`mechanics.load_torques`)."""
+    joints = np.array([posture.joints[name] for name in person.joints])
+    hands = np.concatenate([posture.hand_wrenches[side] for side in SIDES])
+    return load_torques(person, posture.base_angles, joints, hands)
+
+
+def human_load_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
+    """The norm of the torques that the load asks of the person beyond those with empty hands [N m]."""
+    return added_by_load(scene.human, postures[HUMAN]).norm
+
+
+def load_torque_by_posture(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, PostureSlopes]:
+    """Its derivatives by the person's posture and hands' wrenches."""
+    slopes = added_by_load(scene.human, postures[HUMAN]).slopes()
+    joints = dict(zip(scene.human.joints, slopes.joints.tolist(), strict=True))
+    hands = dict(zip(SIDES, np.split(slopes.hands, 2), strict=True))
+    return {HUMAN: PostureSlopes(slopes.angles, joints, hands)}
+
+
+def _back(person: Agent, posture: AgentPosture) -> LumbarLoad:
+    joints = np.array([posture.joints[name] for name in person.joints])
+    feet = np.concatenate([posture.foot_wrenches[side] for side in SIDES])
+    return lumbar_load(person, posture.base_angles, joints, feet, posture.torques[FLEXION])
+
+
+def back_compression(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
+    """Compression of the person's disc L5/S1 [N] (`mechanics.lumbar_load`)."""
+    return _back(scene.human, postures[HUMAN]).compression
+
+
+def compression_by_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, dict[str, float]]:
+    """The muscles' part: sign(tau) / lever."""
+    torque = postures[HUMAN].torques[FLEXION]
+    return {HUMAN: {FLEXION: float(np.sign(torque)) / MUSCLE_LEVER}}
+
+
+def compression_by_posture(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, PostureSlopes]:
+    """The axial force's part."""
+    person, slopes = scene.human, _back(scene.human, postures[HUMAN]).slopes
+    joints = dict(zip(person.joints, slopes[3:-12].tolist(), strict=True))
+    feet = dict(zip(SIDES, np.split(slopes[-12:], 2), strict=True))
+    return {HUMAN: PostureSlopes(slopes[:3], joints, foot_wrenches=feet)}
+
+
+def holding_seconds(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
+    """How long the person can hold the posture [s]; for ever if no torque has a strength in its direction."""
+    found = endurance(postures[HUMAN].torques, scene.human.strengths)
+    return math.inf if found is None else found.seconds
+
+
+def endurance_by_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, dict[str, float]]:
+    """It moves with the joint that tires first."""
+    found = endurance(postures[HUMAN].torques, scene.human.strengths)
+    return {HUMAN: {} if found is None else {found.joint.joint: found.by_torque}}
+
+
+HOLDING_TIME = CaseQuantity("s", holding_seconds, endurance_by_torque)
+"""Of a single case; the quantity is the least of all."""
+
+
+def endurance_seconds(result: DesignResult) -> float | None:
+    """How long all people can hold all loads [s]: the least of all cases; None where nothing tires."""
+    found = values_over_instants(holding_seconds, result)
+    least = math.inf if found is None else min(each for values in found for each in values)
+    return least if least < math.inf else None
