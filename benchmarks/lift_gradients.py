@@ -29,7 +29,7 @@ from evodesign.evaluation.factory import evaluator_of
 from evodesign.evaluation.gradients import assessed_gradients
 from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.motion.instant import KnotBlocks
-from evodesign.motion.program import LiftProgram
+from evodesign.motion.lift_program import LiftProgram
 from evodesign.motion.solution import MotionCase
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.posture.formulations.base import Setting

@@ -25,8 +25,8 @@ from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.factory import evaluator_of
 from evodesign.evaluation.lifts import Lifts
 from evodesign.mechanics.scene import HUMAN
+from evodesign.motion.lift_program import LiftProgram
 from evodesign.motion.lifting import lift_program, moved_posture
-from evodesign.motion.program import LiftProgram
 from evodesign.motion.solution import LiftSolution
 from evodesign.nlp.program import Start
 from evodesign.nlp.solver import status_of

@@ -21,8 +21,8 @@ import numpy as np
 
 from benchmarks.inner_problem import HERE, Design, checker_of, problem_at, random_designs
 from evodesign.motion.instant import KnotBlocks
+from evodesign.motion.lift_program import LiftProgram, LiftStart
 from evodesign.motion.lifting import TOLERANCE_OF_LIFTS
-from evodesign.motion.program import LiftProgram, LiftStart
 from evodesign.nlp.method import MethodName
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem, Symmetry

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from evodesign.errors import InputError, RunError
 from evodesign.evaluation.progress import PrecomputeProgress
-from evodesign.motion.starts import lift_portfolio
+from evodesign.motion.lift_starts import lift_portfolio
 from evodesign.nlp.compiler import optimiser
 from evodesign.nlp.disk_cache import Cache
 from evodesign.nlp.solver import own_solvers

@@ -24,11 +24,11 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from evodesign.motion.check import CheckedLift, LiftChecker
 from evodesign.motion.course import LiftCourse
 from evodesign.motion.instant import KnotBlocks
-from evodesign.motion.parting import LiftSolve, PartedLift
-from evodesign.motion.program import LiftProgram, LiftStart
+from evodesign.motion.lift_bodies import LiftSolve, PartedLift
+from evodesign.motion.lift_check import CheckedLift, LiftChecker
+from evodesign.motion.lift_program import LiftProgram, LiftStart
 from evodesign.nlp.method import Ending, SolverOptions
 from evodesign.nlp.solver import status_of
 from evodesign.posture.results import Attempt

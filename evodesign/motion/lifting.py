@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.mechanics.scene import ROBOT
-from evodesign.motion.check import CheckedLift, LiftChecker, fine_times
 from evodesign.motion.course import LiftCourse
 from evodesign.motion.derivative import LiftDerivative
 from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.least_time import LeastTimes
-from evodesign.motion.parting import LiftSolve, PartedLift
-from evodesign.motion.program import LiftProgram, LiftStart
+from evodesign.motion.lift_bodies import LiftSolve, PartedLift
+from evodesign.motion.lift_check import CheckedLift, LiftChecker, fine_times
+from evodesign.motion.lift_program import LiftProgram, LiftStart
 from evodesign.motion.solution import AgentEffort, LiftSolution, MotionCase
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.optimality import NotDifferentiable

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from evodesign.motion.check import CheckedLift, fine_times
 from evodesign.motion.course import LiftCourse
 from evodesign.motion.least_time import LeastTime
-from evodesign.motion.program import LiftStart
+from evodesign.motion.lift_check import CheckedLift, fine_times
+from evodesign.motion.lift_program import LiftStart
 from evodesign.nlp.method import Ending
 from evodesign.posture.results import Attempt, CaseSolution
 from evodesign.records import Case, Lift, Status

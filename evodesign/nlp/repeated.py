@@ -17,7 +17,7 @@ from evodesign.nlp.codegen import compiled_function
 from evodesign.nlp.compiler import NotCompiled
 from evodesign.nlp.ipopt import casadi_options
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
-from evodesign.nlp.native.blocks import NativeMaker, native_maker
+from evodesign.nlp.native.block_code import NativeMaker, native_maker
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Array, Expression
 from evodesign.nlp.repeated_slopes import central_differences, solution_slopes

@@ -96,6 +96,6 @@ def test_a_posture_near_the_end_of_reach_is_found_from_there(
     portfolio = StartPortfolio((astray,), Coverage(0, 0, 0.0))
     result = Evaluator(
         nearly,
-        replace(known, values={}, postures={Case(person="", payload="", task=nearly.tasks[0]): portfolio}),
+        replace(known, postures={Case(person="", payload="", task=nearly.tasks[0]): portfolio}),
     ).solve(values)
     assert result.cases[0].solved, result.cases[0].reason

@@ -20,8 +20,8 @@ from evodesign.evaluation.inner import inner_problems
 from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.motion.instant import KnotBlocks
+from evodesign.motion.lift_program import LiftProgram
 from evodesign.motion.lifting import LiftProblem
-from evodesign.motion.program import LiftProgram
 from evodesign.nlp.method import MethodName
 from evodesign.posture.check import AgentModel
 from evodesign.posture.formulations.base import Setting

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 
 import msgspec
+import numpy as np
 import pytest
 
 from evodesign.evaluation.evaluate import Evaluator, case_outcome
@@ -119,11 +121,17 @@ def test_ipopt_takes_over_where_the_native_method_fails(
 def test_derivatives_of_native_solutions_are_those_of_ipopt(
     native: Evaluator, evaluator: Evaluator, known: Precomputed
 ) -> None:
+    """Where both end at the same optimum, as they mostly do from the same starts."""
     values = unscaled_values(native.problem)
+    ended = [each.solve(values) for each in (native, evaluator)]
     ours, theirs = (
-        Sensitivities(each.problem, known).at(values, each.solve(values)) for each in (native, evaluator)
+        Sensitivities(each.problem, known).at(values, end)
+        for each, end in zip((native, evaluator), ended, strict=True)
     )
-    for one, other in zip(ours.cases, theirs.cases, strict=True):
+    costs = np.array([[case.attempt.cost for case in end.cases if case.attempt] for end in ended])
+    same = np.isclose(*costs, rtol=1e-6)
+    assert same.sum() >= 2
+    for one, other in itertools.compress(zip(ours.cases, theirs.cases, strict=True), same):
         assert isinstance(one, PostureDerivative)
         assert isinstance(other, PostureDerivative)
         assert one.cost_slope == pytest.approx(other.cost_slope, rel=1e-6, abs=1e-6)

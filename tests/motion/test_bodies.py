@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from evodesign.collision.scene_bodies import SceneBodies
 from evodesign.motion import lifting
 from evodesign.motion.instant import KnotBlocks
+from evodesign.motion.lift_bodies import LiftSolve, PartedLift
+from evodesign.motion.lift_program import LiftProgram
 from evodesign.motion.lifting import LiftProblem
-from evodesign.motion.parting import LiftSolve, PartedLift
-from evodesign.motion.program import LiftProgram
 from evodesign.motion.solution import LiftSolution
 from evodesign.nlp.blocks import Block
 from evodesign.posture.check import AgentModel

@@ -15,11 +15,11 @@ from evodesign.evaluation.sensitivities import five_point
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, OverCases, PushedAt
 from evodesign.mechanics.scene import SIDES
-from evodesign.motion.check import LiftChecker
 from evodesign.motion.derivative import LiftDerivative
 from evodesign.motion.instant import KnotBlocks
+from evodesign.motion.lift_check import LiftChecker
+from evodesign.motion.lift_program import LiftProgram
 from evodesign.motion.lifting import LiftProblem
-from evodesign.motion.program import LiftProgram
 from evodesign.motion.solution import LiftSolution
 from evodesign.nlp.method import MethodName
 from evodesign.posture.check import AgentMotion, Checker

@@ -11,8 +11,8 @@ import pytest
 from evodesign.motion import least_time
 from evodesign.motion.instant import KnotBlocks, fastest_joints
 from evodesign.motion.least_time import LeastTime
+from evodesign.motion.lift_program import LiftProgram
 from evodesign.motion.lifting import LiftProblem
-from evodesign.motion.program import LiftProgram
 from evodesign.motion.solution import LiftSolution
 from evodesign.nlp.solver import status_of
 from evodesign.posture.check import AgentModel

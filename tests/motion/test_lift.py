@@ -17,9 +17,9 @@ from evodesign.errors import InputError
 from evodesign.evaluation.sensitivities import five_point
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import SIDES
-from evodesign.motion.check import LiftChecker
 from evodesign.motion.instant import KnotBlocks
-from evodesign.motion.program import LiftProgram
+from evodesign.motion.lift_check import LiftChecker
+from evodesign.motion.lift_program import LiftProgram
 from evodesign.motion.solution import LiftSolution
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.program import ConstraintBlock

@@ -18,7 +18,7 @@ from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.native import calls
 from evodesign.nlp.native.lanes import lane_flags
 from evodesign.nlp.native.library import native_method
-from evodesign.nlp.native.source import HERE, METHOD_FILES
+from evodesign.nlp.native.program_code import HERE, METHOD_FILES
 from evodesign.nlp.solver import RawSolution, Solver, available
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting

@@ -18,7 +18,7 @@ import numpy as np
 from evodesign.nlp.codegen import built, compiler_and_cache
 from evodesign.nlp.compiler import NotCompiled
 from evodesign.nlp.method import NEAR_BARRIER, NEAR_PUSH, SolverOptions
-from evodesign.nlp.native.source import HERE, METHOD_FILES
+from evodesign.nlp.native.program_code import HERE, METHOD_FILES
 from evodesign.nlp.program import Array
 
 METHOD_FLAGS = ("-std=c11", "-O2", "-shared", "-fPIC", "-ffp-contract=off")

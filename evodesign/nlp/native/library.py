@@ -24,7 +24,7 @@ from evodesign.nlp.compiler import Compiler, NotCompiled
 from evodesign.nlp.disk_cache import Cache
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.native.calls import NOT_LOADED, CalledSolver, method_library
-from evodesign.nlp.native.source import PROBLEM, fixed_variables, program_text
+from evodesign.nlp.native.program_code import PROBLEM, fixed_variables, program_text
 from evodesign.nlp.program import Array, Program
 
 WORTH = 5e-6

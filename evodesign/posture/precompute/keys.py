@@ -13,7 +13,7 @@ from evodesign.posture.precompute.plan import (
     Subject,
 )
 
-CODE, CODE_OF_LIFTS = "evodesign.posture.precompute.pieces", "evodesign.motion.starts"
+CODE, CODE_OF_LIFTS = "evodesign.posture.precompute.pieces", "evodesign.motion.lift_starts"
 """The modules that work pieces out."""
 
 NO_PART_OF_PIECES: Exceptions = {

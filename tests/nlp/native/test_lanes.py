@@ -14,9 +14,9 @@ from evodesign.nlp.blocks import Block, Repeated
 from evodesign.nlp.codegen import FUNCTION_FLAGS
 from evodesign.nlp.compiler import Compiler, find_compiler
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
-from evodesign.nlp.native import blocks
+from evodesign.nlp.native import block_code
+from evodesign.nlp.native.cut_functions import in_pieces
 from evodesign.nlp.native.lanes import LANES, LANES_SYMBOL, in_lanes, lane_flags
-from evodesign.nlp.native.pieces import in_pieces
 from evodesign.nlp.repeated import RepeatedProgram
 from tests.nlp.native.test_pieces import compiled
 
@@ -42,7 +42,7 @@ def block(number: int) -> Block:
 
 @pytest.mark.parametrize("longest", [15, 1000])
 def test_each_lane_has_the_bits_of_the_function(longest: int, tmp_path: Path) -> None:
-    text = blocks._c_text(block(0))
+    text = block_code._c_text(block(0))
     whole = in_lanes(in_pieces(text, longest))
     assert f"{LANES_SYMBOL} = {LANES};" in whole
     assert ("kept[" in whole) is (longest == 15)
@@ -79,11 +79,13 @@ def test_a_solve_in_lanes_has_the_bits_of_one_without(
     compiler = find_compiler(os.environ)
     assert isinstance(compiler, Compiler)
     wanted = LANES if lane_flags(compiler) else 1
-    counts: list[blocks.BlockFunctions] = []
-    made = blocks.block_functions
-    monkeypatch.setattr(blocks, "block_functions", lambda *a, **k: counts.append(made(*a, **k)) or counts[-1])
+    counts: list[block_code.BlockFunctions] = []
+    made = block_code.block_functions
+    monkeypatch.setattr(
+        block_code, "block_functions", lambda *a, **k: counts.append(made(*a, **k)) or counts[-1]
+    )
     together = solved()
-    monkeypatch.setattr(blocks, "lane_flags", lambda compiler: ())
+    monkeypatch.setattr(block_code, "lane_flags", lambda compiler: ())
     alone = solved()
     assert together.iterations == alone.iterations > 3
     assert together.symbols.tobytes() == alone.symbols.tobytes()
@@ -97,7 +99,7 @@ def test_what_lanes_cannot_do_is_done_in_one() -> None:
     choosing = Block(
         "choosing", seen, none, none, ca.if_else(seen[0] > 0.0, seen[1], 2.0), seen, -np.ones(2), np.ones(2)
     )
-    text = blocks._c_text(choosing)
+    text = block_code._c_text(choosing)
     assert in_lanes(text) == f"{text}\nconst int {LANES_SYMBOL} = 1;\n"
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from evodesign.nlp.compiler import Compiler, find_compiler
-from evodesign.nlp.native.source import HERE, METHOD_FILES, program_text
+from evodesign.nlp.native.program_code import HERE, METHOD_FILES, program_text
 from tests.machine import memory_sanitizer
 from tests.nlp.native.programs import random_program
 

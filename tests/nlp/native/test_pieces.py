@@ -14,8 +14,8 @@ import pytest
 from evodesign.nlp.codegen import FUNCTION_FLAGS
 from evodesign.nlp.compiler import BUNDLED, Compiler, find_compiler
 from evodesign.nlp.method import MethodName, SolverOptions
-from evodesign.nlp.native.pieces import in_pieces
-from evodesign.nlp.native.source import program_text
+from evodesign.nlp.native.cut_functions import in_pieces
+from evodesign.nlp.native.program_code import program_text
 from evodesign.nlp.solver import Solver
 from tests.nlp.native.programs import random_program
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from evodesign.motion.program import LiftProgram, LiftStart
+from evodesign.motion.lift_program import LiftProgram, LiftStart
 from evodesign.nlp.method import Ending
 from evodesign.nlp.solver import ROUNDS, UNSETTLED, status_of
 from evodesign.posture.parting import Meetings

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.mechanics.scene import HUMAN, ROBOT, scene_of
+from evodesign.motion.lift_program import LiftProgram
 from evodesign.motion.lifting import MOVED, lift_program, lift_starts, moved_posture
-from evodesign.motion.program import LiftProgram
 from evodesign.nlp.landscape import NEAR, spread_designs
 from evodesign.nlp.program import Start
 from evodesign.nlp.solver import status_of

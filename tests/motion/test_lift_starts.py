@@ -10,11 +10,11 @@ import pytest
 
 from evodesign.evaluation.precompute import precompute_setting
 from evodesign.mechanics.scene import HUMAN, ROBOT
-from evodesign.motion import starts
+from evodesign.motion import lift_starts as trained
+from evodesign.motion.lift_program import LiftProgram, LiftStart
+from evodesign.motion.lift_starts import lift_portfolio
 from evodesign.motion.lifting import MOVED, lift_program, lift_starts
-from evodesign.motion.program import LiftProgram, LiftStart
 from evodesign.motion.solution import LiftSolution
-from evodesign.motion.starts import lift_portfolio
 from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.nlp.start_training import Training
 from evodesign.posture.precompute.keys import key_of
@@ -89,7 +89,7 @@ def test_a_robot_that_is_moved_by_nothing_begins_at_its_hold(
 def test_a_chosen_start_leads_to_no_worse_a_lift_than_the_holds(
     lifted: Lifted, problem: DesignProblem, solution: LiftSolution, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(starts, "TRAINING", Training(designs=1, begun=1, random=0, offers=1, portfolio=1))
+    monkeypatch.setattr(trained, "TRAINING", Training(designs=1, begun=1, random=0, offers=1, portfolio=1))
     lift = LIFT.coarse
     compiled = replace(precompute_setting(problem), options=lifted.setting.options)
     portfolio = lift_portfolio(compiled, ("", ""), lift, NOTHING_PRECOMPUTED)

@@ -20,11 +20,11 @@ from evodesign.nlp.codegen import FUNCTION_FLAGS, Library, built, compiler_and_c
 from evodesign.nlp.compiler import NotCompiled
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.native.calls import NOT_LOADED, CalledSolver, CSolution, method_library
+from evodesign.nlp.native.cut_functions import in_pieces
 from evodesign.nlp.native.elimination import elimination
 from evodesign.nlp.native.lanes import LANES_SYMBOL, in_lanes, in_one_lane, lane_flags
-from evodesign.nlp.native.pieces import in_pieces
+from evodesign.nlp.native.program_code import UNBOUNDED
 from evodesign.nlp.native.scatter import Scatter, hessian_targets, jacobian_targets, scattered
-from evodesign.nlp.native.source import UNBOUNDED
 from evodesign.nlp.native.structures import BlockRecord, Memory
 from evodesign.nlp.program import Array
 
