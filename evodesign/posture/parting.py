@@ -76,6 +76,10 @@ class Parted:
         """Of the parameters that say which rows are on."""
         return [each.name for each in self._bodies]
 
+    def names_of(self, agent: str) -> Collection[str]:
+        """Those of one agent's bodies."""
+        return [each.name for each in self._bodies if each.body.form.agent.name == agent]
+
     @cached_property
     def program(self) -> Program:
         """With all rows."""

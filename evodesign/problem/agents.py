@@ -6,13 +6,13 @@ A population's table stands for one person per sex and percentile.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 import msgspec
 
 from evodesign.body.placement import Placement, transpose
-from evodesign.errors import InputError, nearest_name
+from evodesign.errors import InputError
 from evodesign.human.anthropometry import Person, sole_size
 from evodesign.human.anthropometry_tables import ShoulderWidth
 from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree
@@ -35,6 +35,7 @@ from evodesign.problem.meshes import with_surfaces
 from evodesign.problem.person_posture import HEAD, with_posture
 from evodesign.problem.stance_limits import stance_of
 from evodesign.problem.torque_limits import torque_limits
+from evodesign.problem.unknown_names import refuse_unknown
 from evodesign.records import ProblemSource
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.urdf_read import InertiaRule, read_urdf
@@ -205,26 +206,6 @@ def _agent(
         sole_size=SoleSize(*soles.size_m),
         trunk=trunk,
     )
-
-
-def refuse_unknown(
-    source: ProblemSource, key: str, noun: str, name: str, known: Collection[str], where: str
-) -> None:
-    """Refuse a name that is not among the known ones.
-
-    Args:
-        source: the problem, for messages.
-        key: where in it the name stands.
-        noun: what is named, such as `link`.
-        name: as written.
-        known: all that would do.
-        where: the model that holds them.
-    Raises:
-        InputError: naming the nearest known one.
-    """
-    if name not in known:
-        hint = nearest_name(name, known)
-        raise InputError(source.path, key, f"the name of a {noun} of '{where}'", f"'{name}'{hint}")
 
 
 OF_ONE = ("stature_m", "mass_kg", "sex", "urdf")

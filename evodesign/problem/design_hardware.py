@@ -15,10 +15,10 @@ from evodesign.design.parameter import DesignParameter, ParameterKind
 from evodesign.design.walls import Wall
 from evodesign.errors import InputError, nearest_name
 from evodesign.hardware.actuators import Actuator, CatalogueRow, actuator_of_row, catalogue
-from evodesign.problem.agents import refuse_unknown
 from evodesign.problem.design_space import known_materials
 from evodesign.problem.design_table import ActuatorTable, WallTable
 from evodesign.problem.file import ProblemFile
+from evodesign.problem.unknown_names import refuse_unknown
 from evodesign.records import ProblemSource
 from evodesign.tree.model import Tree
 

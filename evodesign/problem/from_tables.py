@@ -10,9 +10,6 @@ from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.contact import Ground
 from evodesign.mechanics.scene import Scene
 from evodesign.pool.base import Limits
-from evodesign.problem.agents import (
-    refuse_unknown,
-)
 from evodesign.problem.design_hardware import (
     actuator_parameters,
     wall_parameters,
@@ -23,6 +20,7 @@ from evodesign.problem.design_space import (
 )
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.unanswered_quantities import refuse_unanswered_quantity
+from evodesign.problem.unknown_names import refuse_unknown
 from evodesign.quantities.objectives import OTHERWISE_CALLED, objective_kind, objective_kinds
 from evodesign.records import (
     Hold,

@@ -14,10 +14,10 @@ from evodesign.errors import InputError
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import SIDES, Agent
 from evodesign.mechanics.stance_case import RaisedHand, StanceCase
-from evodesign.problem.agents import refuse_unknown
 from evodesign.problem.design_table import Feet, Hands, HoldTable, LoadCaseTable, Pushed, PushTable
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.torque_limits import driven_joints
+from evodesign.problem.unknown_names import refuse_unknown
 from evodesign.records import ProblemSource
 
 

@@ -33,7 +33,7 @@ from evodesign.posture.exchange import Exchange
 from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.load_cases import WorstCase, aggregated
 from evodesign.posture.measured_starts import POSTURE, measured_starts
-from evodesign.posture.parting import parted
+from evodesign.posture.parting import Parted, parted
 from evodesign.posture.results import CaseSolution, Instant, Neighbour
 from evodesign.posture.solution_derivative import PostureDerivative, found_again
 from evodesign.posture.starts import different_people, fixed_starts, named_starts, universal_starts
@@ -149,8 +149,8 @@ class JointPostures:
         """Names of all that starts say of the person."""
         program = self._solver.program
         own = layout_of(program, HUMAN).values()
-        switches = program.switches.names if program.switches is not None else ()
-        return frozenset([*own, *(name for name in switches if name.split(".")[-2] == HUMAN)])
+        switches = program.switches
+        return frozenset([*own, *(switches.names_of(HUMAN) if isinstance(switches, Parted) else ())])
 
     def keeps_clear(self, raw: RawSolution, task: Task, checker: Checker) -> bool:
         """Whether the check finds no bodies that overlap in a solution."""
