@@ -1,7 +1,7 @@
 """Lifts of any design of a scene: found from its holds at both ends and checked, or told why there is none.
 
 Solves begin at the robot's hold at either end, followed along the lift with the feet in place, beside persons
-whose motions were found once for the problem (`motion.lift_starts`); so a result depends on problem and design
+whose motions were found once for the problem (`lift_starts`); so a result depends on problem and design
 alone. The cheapest one counts. Holds of several heights joined together do not do for a start: their elbows
 bend in different ways.
 """

@@ -60,7 +60,7 @@ def in_lanes(text: str) -> str:
     """The same C with functions that work in lanes; in one, where some operation cannot be done in several.
 
     Args:
-        text: of a CasADi function, cut into pieces (`nlp.native.cut_functions`): as one function it would take a
+        text: of a CasADi function, cut into pieces (see `cut_functions`): as one function it would take a
             compiler minutes.
     """
     changed = [_in_lanes(line) for line in text.splitlines()]
