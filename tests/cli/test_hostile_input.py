@@ -10,7 +10,9 @@ import pytest
 from evodesign.problem.named_files import LONGEST_FILE
 from tests.cli.bounded import evodesign_bounded
 from tests.cli.here import evodesign
-from tests.cli.test_bad_input import PROBLEM, ROBOT, assert_explained, spoil
+from tests.cli.test_bad_input import PROBLEM, ROBOT, assert_explained, place, spoil
+
+__all__ = ["place"]
 
 TWENTY_THOUSAND_PARTS = "a" + ".a" * 19_999 + " = 1\n"
 

@@ -17,6 +17,9 @@ from evodesign.problem.build import DesignProblem
 from evodesign.records import Hold
 from evodesign.simulation.model import SimulatedScene, simulated_scene
 from evodesign.tree.model import Tree
+from tests.motion.conftest import lifted
+
+__all__ = ["lifted"]
 
 HEIGHT = 1.0
 
