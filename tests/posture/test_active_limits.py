@@ -287,7 +287,7 @@ def test_whole_postures_have_the_prices_of_their_halves(
     found = start_from(program, forms, solution.instants)
     parameters = {"design": values, "height": height, "mass": close.scene.payload.mass}
     raw = replace(solution.raw, values=found, multipliers=recovered(program, parameters, found))
-    of_whole = priced([LimitSlopes(program).of(parameters, raw)], solution.raw.cost)
+    of_whole = priced(LimitSlopes(program).of(parameters, raw), solution.raw.cost)
     of_halves = halves.active_limits(values, solution)
     assert prices(of_halves)
     for number, (price, _) in prices(of_halves).items():
@@ -322,7 +322,7 @@ def test_multipliers_that_are_none_have_no_prices(problem: DesignProblem) -> Non
     )
     program = postures._solver.program
     assert LimitSlopes(program).of({}, replace(raw, multipliers=nothing)) == {}
-    assert priced([{}], raw.cost) == ()
+    assert priced({}, raw.cost) == ()
 
 
 def test_steps_and_words_of_limits() -> None:
