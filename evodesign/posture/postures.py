@@ -63,7 +63,7 @@ class PostureProblem:
         self._setting, self._symmetry, self._known = setting, symmetry, known
         self._solvers = solvers or SolverCache()
         self._made: dict[tuple[str, type[TaskRecord], MethodName], JointPostures] = {}
-        self._latest: dict[tuple[JointPostures, Task], tuple[object, Trial]] = {}
+        self._latest: dict[tuple[JointPostures, Task, bool], tuple[object, Trial]] = {}
         if symmetry is not Symmetry.OFF:
             setting.space.check_mirror(setting.scene.robot.tree)
             symmetric_forms(setting.scene)
@@ -229,11 +229,12 @@ class PostureProblem:
         portfolio: Sequence[Start],
         checker: Checker,
     ) -> Trial:
-        """What a portfolio leads to; that of the latest design is at hand."""
-        of, found = (tuple(design), type(checker)), self._latest.get((formulation, task))
+        """What the portfolio, or the fixed starts, lead to; that of the latest design is at hand."""
+        key, of = (formulation, task, bool(portfolio)), (tuple(design), type(checker))
+        found = self._latest.get(key)
         if found is None or found[0] != of:
             found = of, formulation.solve(design, task, portfolio, checker)
-            self._latest[formulation, task] = found
+            self._latest[key] = found
         return found[1]
 
     def _in_turn(self, task: Task) -> Iterator[tuple[str, tuple[Start, ...]]]:
