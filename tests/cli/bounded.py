@@ -39,6 +39,10 @@ if __name__ == "__main__":
     import casadi  # noqa: F401
     import lxml.etree  # noqa: F401
 
+    import evodesign.cli.check
+    import evodesign.guess.preflight
+    import evodesign.problem.inertia_rules
+    import evodesign.problem.mesh_reading  # noqa: F401
     from evodesign.cli import main
 
     _bound()
