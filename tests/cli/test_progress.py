@@ -29,10 +29,9 @@ PIECES = [
 
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[float]]:
-    """A list whose only element is the time of both displays [s]."""
+    """A list whose only element is the time of the lines [s]."""
     now = [100.0]
-    for module in (progress, progress_lines):
-        monkeypatch.setattr(module, "time", SimpleNamespace(monotonic=lambda: now[0]))
+    monkeypatch.setattr(progress_lines, "time", SimpleNamespace(monotonic=lambda: now[0]))
     return now
 
 
