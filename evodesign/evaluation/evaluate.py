@@ -43,6 +43,7 @@ from evodesign.records import (
     Status,
     worst_status,
 )
+from evodesign.searches.surrogate.threads import one_thread
 from evodesign.violations import BODIES_APART, missed_height, total_violation
 
 UNDISTURBED = ""
@@ -83,7 +84,8 @@ class Evaluator:
         values = self.problem.space.values(genome)
         result = self.solve(values)
         began = time.perf_counter()
-        gradients = assessed_gradients(self.problem, self._sensitivities, values, result)
+        with one_thread():
+            gradients = assessed_gradients(self.problem, self._sensitivities, values, result)
         seconds = time.perf_counter() - began
         assessed = self._assessed(values, result)
         assessment = msgspec.structs.replace(assessed.assessment, gradients=gradients)
