@@ -121,7 +121,7 @@ def _with_starts(problem: DesignProblem, scene: Scene, count: int) -> PosturePro
     setting = Setting(scene, problem.space, problem.weights, problem.options)
     landscape = PostureProblem(setting, problem.symmetry).landscape(HOLDS[0])
     rng = np.random.default_rng(0)
-    starts = (*landscape.starts, *(landscape.random_start(rng) for _ in range(count)))
+    starts = (*landscape.starts, *(landscape.free_start(rng) for _ in range(count)))
     portfolio = StartPortfolio(starts, Coverage(0, 0, 0.0))
     known = Precomputed(postures=dict.fromkeys(HOLDS, portfolio))
     return PostureProblem(setting, problem.symmetry, known)

@@ -133,7 +133,7 @@ class Judge:
         return Ends(np.inf if low is None else low, -np.inf if high is None else high, down, -up)
 
     def _best(self, landscape: Landscape, design: Design, rng: np.random.Generator) -> float:
-        ends = [landscape.solve(design, landscape.random_start(rng)) for _ in range(self._starts)]
+        ends = [landscape.solve(design, landscape.free_start(rng)) for _ in range(self._starts)]
         return min((end.cost for end in ends if end.status is Status.SOLVED), default=np.inf)
 
 

@@ -146,7 +146,7 @@ class Judge:
         """From how many starts a hold is found that passes the check."""
         pair, rng = solution.case.pair, np.random.default_rng(0)
         landscape = self._postures[pair].landscape(solution.case.task, self._checkers[pair].of)
-        ends = (landscape.solve(design, landscape.random_start(rng)) for _ in range(self._starts))
+        ends = (landscape.solve(design, landscape.free_start(rng)) for _ in range(self._starts))
         return sum(end.status is Status.SOLVED for end in ends)
 
 

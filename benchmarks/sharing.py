@@ -47,7 +47,7 @@ def sweep(problem: DesignProblem, allocation: str, height: float, starts: int) -
     space = DesignSpace((parameter,))
     postures = PostureProblem(Setting(scene, space, EffortWeights(), problem.options), Symmetry.ON)
     landscape, rng = postures.landscape(Hold(height_m=height)), np.random.default_rng(1)
-    tried = [*landscape.starts, *(landscape.random_start(rng) for _ in range(starts))]
+    tried = [*landscape.starts, *(landscape.free_start(rng) for _ in range(starts))]
     person = AgentModel.of(scene.human, scene.human.tree)
     for value in VALUES[allocation]:
         ends = [landscape.solve((value,), start) for start in tried]

@@ -94,6 +94,7 @@ class Landscape:
         begun: where a solve begins for a start and the parameters; left out, at the start as it is.
         accepted: whether a solution of a design counts; left out, each does.
         universal: starts all over the program's variables, from which optima are sought.
+        known: parts of starts that are known beforehand; each drawn start has one of them.
     """
 
     solver: Solver
@@ -104,6 +105,7 @@ class Landscape:
     begun: Callable[[Start, Mapping[str, Any]], Start] | None = None
     accepted: Callable[[Design, RawSolution], bool] | None = None
     universal: tuple[Start, ...] = ()
+    known: tuple[Start, ...] = ()
 
     def solve(self, design: Design, start: Start) -> RawSolution:
         """The optimum that the solver finds from a start."""
@@ -143,6 +145,11 @@ class Landscape:
         return float(program.symbols.numel() + program.rows.numel())
 
     def random_start(self, rng: np.random.Generator) -> Start:
+        """A free start, but for what is known."""
+        start = self.free_start(rng)
+        return {**start, **self.known[int(rng.integers(len(self.known)))]} if self.known else start
+
+    def free_start(self, rng: np.random.Generator) -> Start:
         """One of the fixed starts, with all that is drawn anywhere between its bounds."""
         start = dict(self.starts[int(rng.integers(len(self.starts)))])
         for variable in self.solver.program.variables:

@@ -38,7 +38,7 @@ def test_reachable_heights_are_solved_and_about_as_good_as_the_best_of_many_star
     figures = summary([row for part in joblib.Parallel(2)(halves) for row in part])
     assert figures["reachable_heights"] > 2.5 * DESIGNS
     assert figures["solved_share"] >= 0.995
-    assert figures["within_1_percent_share"] >= 0.97, "two of 75 cost 1.3 and 1.4 % more, both at 1.5 m"
+    assert figures["within_1_percent_share"] >= 0.99
 
 
 def test_random_starts_are_solved_with_the_bodies_apart_that_the_problem_keeps_apart() -> None:

@@ -77,7 +77,7 @@ def test_a_better_pair_than_any_start_leads_to_is_found(problem: DesignProblem) 
     design = space.unscaled(scene.robot.tree)
     landscape = PostureProblem(setting, Symmetry.ON).landscape(task)
     rng = np.random.default_rng(1)
-    ends = [landscape.solve(design, landscape.random_start(rng)) for _ in range(30)]
+    ends = [landscape.solve(design, landscape.free_start(rng)) for _ in range(30)]
     solved = sorted((end for end in ends if end.status is Status.SOLVED), key=lambda end: end.cost)
     good = solved[0]
     bad = next(

@@ -31,6 +31,7 @@ from evodesign.posture.candidate import Candidate, Finishing, Trial, cheapest, c
 from evodesign.posture.check import Checker
 from evodesign.posture.exchange import Exchange
 from evodesign.posture.formulations.base import Setting, program_key
+from evodesign.posture.formulations.person import PersonProblem
 from evodesign.posture.load_cases import WorstCase, aggregated
 from evodesign.posture.measured_starts import POSTURE, measured_starts
 from evodesign.posture.parting import Parted, parted
@@ -133,16 +134,32 @@ class JointPostures:
 
     def landscape(self, task: Task) -> Landscape:
         """The program's cost for a task."""
-        program = self._solver.program
-        people = measured_starts(program, self._forms[1], self._setting.scene, task.heights)
+        program, people = self._solver.program, self._known_people(task)
         return Landscape(
             self._solver,
             self._beside(task),
             self._fixed(task),
             *NEAR,
             begun=self._begun,
-            universal=universal_starts(program, people[:1]),
+            universal=universal_starts(program, people),
+            known=people,
         )
+
+    def _known_people(self, task: Task) -> tuple[Start, ...]:
+        """The person's side of starts: the mean of measured postures, or what costs the person alone least.
+
+        Agents mostly push or pull as far as they may, so the person alone does both. Whole people have more
+        ways to stand than a few stand for: theirs is not known.
+        """
+        program, form, setting = self._solver.program, self._forms[1], self._setting
+        measured = measured_starts(program, form, setting.scene, task.heights)
+        if measured or form.mirror is None:
+            return tuple(measured[:1])
+        scene, own = setting.scene.undisturbed, layout_of(program, HUMAN).values()
+        alone = PersonProblem(form, scene, setting.weights.human, setting.options, self._solvers)
+        pushes = dict.fromkeys((-scene.stance.push, scene.stance.push))
+        ends = [alone.best_of_many(task.heights[0], push) for push in pushes]
+        return tuple({name: end.values[name] for name in own if name in end.values} for end in ends if end)
 
     @cached_property
     def person(self) -> frozenset[str]:
