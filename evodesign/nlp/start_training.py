@@ -42,7 +42,7 @@ class Training:
 
     designs: int = 48
     begun: int = 24
-    random: int = 6
+    random: int = 3
     offers: int = 24
     portfolio: int = 8
 

@@ -38,9 +38,6 @@ LEARNED_FROM, LOOKED_AT = 96, 8
 """Designs whose reach is asked for, at most, to learn from those that hold a load; and how many times as many
 are looked at, at most, as many cannot be built."""
 
-BESIDE_MEASURED = replace(USUAL, random=0)
-"""Beside a person who is drawn to measured postures the same portfolios are found without random starts."""
-
 
 def compute_piece(
     setting: PrecomputeSetting, piece: Piece, known: Precomputed, solvers: SolverCache | None = None
@@ -162,5 +159,4 @@ def _portfolio(
         ends = (middle.solve(design, start) for start in middle.universal)
         return next((end.values for end in ends if end.status is Status.SOLVED), None)
 
-    training = USUAL if scene.human.measured is None else BESIDE_MEASURED
-    return start_portfolio(problem.landscape(task, checker_of), designs, training, in_the_middle)
+    return start_portfolio(problem.landscape(task, checker_of), designs, USUAL, in_the_middle)
