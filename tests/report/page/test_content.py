@@ -17,7 +17,7 @@ from evodesign.evaluation.clearance import Clearances
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.left_out import left_out
 from evodesign.records import Objective, Sense
-from evodesign.report.page import gather, page_content, page_html
+from evodesign.report.page import gather, page_content, page_html, postures
 from evodesign.report.page.content import Content, Points
 from evodesign.report.page.marks import chosen_points
 from evodesign.report.page.render import TEMPLATE
@@ -125,12 +125,15 @@ def test_design_that_the_run_does_not_hold_is_refused(real_run: RunLog) -> None:
 def test_what_is_left_out_is_said(
     real_run: RunLog, monkeypatch: pytest.MonkeyPatch, content: Content
 ) -> None:
+    monkeypatch.setattr(postures, "MOST_NUMBERS", 1)
+    bare = page_content(real_run)
     monkeypatch.setattr(gather, "MOST_POINTS", 6)
     small = page_content(real_run)
     frequent = tuple(each.sentence for each in frequent_limits(real_run))
     assert content.notes == (*frequent, *left_out(real_run.header.problem))
     assert any(note.startswith("no [collisions]") for note in content.notes)
     assert any(note.startswith("6 of 12 evaluations") for note in small.notes)
+    assert any("postures of" in note for note in bare.notes)
     assert small.facts == content.facts, "the run's own figures count everything"
 
 
