@@ -8,7 +8,7 @@ span from "the robot carries" to "the person carries".
 
 An actuator parameter is the rated torque of all actuators of a group of joints: any within bounds, by the law
 of the catalogue, or that of a model. A margin says how many times what is asked of it an actuator's rated
-torque is; programs are given the rated torque in its place (`problem.sizing`).
+torque is; programs are given the rated torque in its place (`evaluation.sizing`).
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ Where the problem has disturbances, a solved case's `disturbed` holds, by their 
 of the same posture under each. Residuals of such a case carry its name.
 
 `materials` names the material of each density that is one's; a problem without materials has no such key.
-Likewise `hardware`, the bill of materials (`problem.bill`), where there are actuators or walls.
+Likewise `hardware`, the bill of materials (`evaluation.bill`), where there are actuators or walls.
 
 `constraints` has an entry for each of the problem's `[constraints]`, with its `lower` and `upper` bound, its
 `value` and by how much that violates it, all in its unit; a problem without constraints has no such key.

@@ -215,7 +215,7 @@ class ActuatorContent(Part, frozen=True):
         count: of joints.
         mass_kg, price_eur: of one.
         joint: of the group, that is used most.
-        asked_n_m, asked_by, share: of it, as in `problem.bill`.
+        asked_n_m, asked_by, share: of it, as in `evaluation.bill`.
         loss_w: of all together, each at its most.
     """
 
