@@ -2,8 +2,8 @@
 
 Of a design whose build brings bodies together only the reach is asked.
 
-With sized actuators postures are found in rounds (`evaluation.sizing`): the first asks for reach and begins all
-cases; the last one checks them.
+With sized actuators postures are found in rounds (`evaluation.sizing`): the first asks for reach and begins
+all cases; the last one checks them.
 """
 
 from __future__ import annotations
