@@ -86,7 +86,6 @@ bench: $(VENV)/installed-robots  ## measured ratios, written to benchmarks/resul
 	$(BIN)/python benchmarks/idle_share.py
 	$(BIN)/python benchmarks/overhead.py
 	$(BIN)/python -m benchmarks.public_robots
-	$(BIN)/python -m benchmarks.cold_start
 	$(BIN)/python -m benchmarks.averaging
 	$(BIN)/python -m benchmarks.native_solver
 	$(BIN)/python -m benchmarks.lift_speed

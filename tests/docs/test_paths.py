@@ -1,4 +1,4 @@
-"""Every file that README, CONTRIBUTING and docs name is there: links, paths of the repository, modules."""
+"""Every file that README, CONTRIBUTING, Makefile and docs name is there: links, paths of the repository, modules."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ PAGES = sorted(
     [
         REPOSITORY / "README.md",
         REPOSITORY / "CONTRIBUTING.md",
+        REPOSITORY / "Makefile",
         *(REPOSITORY / "docs").rglob("*.md"),
         *(REPOSITORY / "docs").rglob("*.ipynb"),
     ]
