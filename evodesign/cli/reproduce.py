@@ -104,7 +104,7 @@ def _first(experiment: Experiment, without: DesignProblem, starts: int, *, json:
         stricter_table,
         torque_table,
     )
-    from evodesign.report.reproduction import reproduction_json, write_reproduction
+    from evodesign.reproduction.files2022 import reproduction_json, write_reproduction
     from evodesign.reproduction.lifting2022 import reproduction
 
     done = reproduction(experiment, without, starts)
@@ -125,8 +125,8 @@ def _sequel(experiment: Experiment, *, json: bool) -> None:
     from evodesign.cli.output import console, print_json, print_lines
     from evodesign.cli.tables.reproduction import claims_table
     from evodesign.cli.tables.sequel import robots_table, sequel_lines
-    from evodesign.report.sequel import sequel_json, write_sequel
     from evodesign.reproduction.codesign2023 import sequel_reproduction
+    from evodesign.reproduction.files2023 import sequel_json, write_sequel
 
     done = sequel_reproduction(experiment)
     directory = experiment.directory

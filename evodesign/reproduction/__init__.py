@@ -1,1 +1,1 @@
-"""The experiments of the two papers again: robots, people and loads, with verdicts on the claims."""
+"""What the two papers claim, their experiments again (robots, people, loads), and verdicts."""

@@ -13,7 +13,16 @@ import math
 import time
 from collections.abc import Sequence
 
-from evodesign.analysis.sequel_claims import (
+from evodesign.errors import InputError
+from evodesign.evaluation.factory import evaluator_of
+from evodesign.problem.build import DesignProblem
+from evodesign.problem.designs import read_designs
+from evodesign.problem.named_files import read_text
+from evodesign.problem.shipped import SHIPPED
+from evodesign.quantities.design_result import DesignResult
+from evodesign.quantities.objectives import bodies_apart, objective_value
+from evodesign.records import Evaluation
+from evodesign.reproduction.claims2023 import (
     GA,
     RobotFigures,
     SearchFigures,
@@ -24,17 +33,8 @@ from evodesign.analysis.sequel_claims import (
     robot_claim,
     search_claim,
 )
-from evodesign.errors import InputError
-from evodesign.evaluation.factory import evaluator_of
-from evodesign.problem.build import DesignProblem
-from evodesign.problem.designs import read_designs
-from evodesign.problem.named_files import read_text
-from evodesign.problem.shipped import SHIPPED
-from evodesign.quantities.design_result import DesignResult
-from evodesign.quantities.objectives import bodies_apart, objective_value
-from evodesign.records import Evaluation
-from evodesign.report.sequel import SequelReproduction
 from evodesign.reproduction.experiment import STRICTER, Experiment, stricter_problem
+from evodesign.reproduction.files2023 import SequelReproduction
 from evodesign.runlog.run import RunLog
 from evodesign.tree.model import Tree
 

@@ -10,7 +10,15 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from evodesign.analysis.front import front
-from evodesign.analysis.paper_claims import (
+from evodesign.evaluation.baseline import GENERATION, Baseline, broken_limits, held_at, torque_difference
+from evodesign.evaluation.evaluate import detail_of
+from evodesign.evaluation.factory import evaluator_of
+from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.posture.formulations.codesign import JointSolution
+from evodesign.problem.build import DesignProblem
+from evodesign.records import Evaluation
+from evodesign.report.scene_models import SceneModels
+from evodesign.reproduction.claims2022 import (
     AT,
     PAPER_ORIGINAL,
     TorqueNorms,
@@ -20,16 +28,8 @@ from evodesign.analysis.paper_claims import (
     reduction_claim,
     table_claim,
 )
-from evodesign.evaluation.baseline import GENERATION, Baseline, broken_limits, held_at, torque_difference
-from evodesign.evaluation.evaluate import detail_of
-from evodesign.evaluation.factory import evaluator_of
-from evodesign.mechanics.scene import HUMAN, ROBOT
-from evodesign.posture.formulations.codesign import JointSolution
-from evodesign.problem.build import DesignProblem
-from evodesign.records import Evaluation
-from evodesign.report.reproduction import Found, Published, ReproducedRobot, Reproduction
-from evodesign.report.scene_models import SceneModels
 from evodesign.reproduction.experiment import MEASURED, STRICTER, Experiment, stricter_problem
+from evodesign.reproduction.files2022 import Found, Published, ReproducedRobot, Reproduction
 from evodesign.runlog.run import RunLog
 from evodesign.searches.base import JOINT_STARTS
 from evodesign.searches.registry import make_search

@@ -1,7 +1,7 @@
 """Commands in processes that may use 300 MB beyond what they import, and eight times its processor time.
 
-Importing takes 1.3 s on an idle machine, and about as much longer as everything else on a slow or busy one; what
-is slow because it grows faster than its input takes many times as long.
+Importing takes 1.3 s on an idle machine, and about as much longer as everything else on a slow or busy one.
+What grows faster than its input takes many times as long.
 """
 
 from __future__ import annotations

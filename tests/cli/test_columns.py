@@ -24,8 +24,6 @@ from hypothesis import strategies as st
 from rich.cells import cell_len
 from rich.console import Console
 
-from evodesign.analysis import sequel_claims
-from evodesign.analysis.paper_claims import human_claim, reach_claim, reduction_claim, table_claim
 from evodesign.cli import output
 from evodesign.cli.main import COMMANDS, app
 from evodesign.cli.tables.reproduction import (
@@ -39,9 +37,11 @@ from evodesign.cli.tables.table import names, numbers, titled
 from evodesign.cli.tables.worst_cases import forces_by_height, torques_by_height
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Status
-from evodesign.report.reproduction import Found, Published, ReproducedRobot, Reproduction
 from evodesign.report.scene_models import SceneModels
-from evodesign.report.sequel import SequelReproduction
+from evodesign.reproduction import claims2023
+from evodesign.reproduction.claims2022 import human_claim, reach_claim, reduction_claim, table_claim
+from evodesign.reproduction.files2022 import Found, Published, ReproducedRobot, Reproduction
+from evodesign.reproduction.files2023 import SequelReproduction
 from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
 from tests.report.scenes import random_detail
@@ -238,18 +238,18 @@ def test_the_tables_of_a_reproduction_are_whole(place: Path, both: BothWidths) -
 
 
 def test_the_tables_of_the_sequels_reproduction_are_whole(place: Path, both: BothWidths) -> None:
-    names = ("unscaled", "nl", "ga", *sequel_claims.LOGGED, *sequel_claims.FAILED, "search")
+    names = ("unscaled", "nl", "ga", *claims2023.LOGGED, *claims2023.FAILED, "search")
     robots = {
-        name: sequel_claims.RobotFigures(name, 44.5 + number, 12.5, 10.6, 58.57, 1.379, 27, 27)
+        name: claims2023.RobotFigures(name, 44.5 + number, 12.5, 10.6, 58.57, 1.379, 27, 27)
         for number, name in enumerate(names)
     }
-    search = sequel_claims.SearchFigures(480, 4, 1.1, 2, 5, 17, 44.48, 48.2)
+    search = claims2023.SearchFigures(480, 4, 1.1, 2, 5, 17, 44.48, 48.2)
     claims = (
-        *(claim(robots) for claim in (sequel_claims.log_claim, sequel_claims.order_claim)),
-        sequel_claims.robot_claim(robots),
-        sequel_claims.gain_claim(robots, search),
-        sequel_claims.failure_claim(robots, search),
-        sequel_claims.search_claim(search),
+        *(claim(robots) for claim in (claims2023.log_claim, claims2023.order_claim)),
+        claims2023.robot_claim(robots),
+        claims2023.gain_claim(robots, search),
+        claims2023.failure_claim(robots, search),
+        claims2023.search_claim(search),
     )
     done = SequelReproduction(robots, robots, {}, {}, 477, read_run(place / "run"), search, claims)
     output.console().print(robots_table(done))

@@ -1,4 +1,4 @@
-"""Every file that README, CONTRIBUTING, Makefile and docs name is there: links, paths of the repository, modules."""
+"""Every file that README, CONTRIBUTING, Makefile and docs name is there: links, paths, modules."""
 
 from __future__ import annotations
 

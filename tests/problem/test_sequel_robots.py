@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from evodesign.analysis.sequel_claims import FAILED, LOGGED
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.designs import read_designs
 from evodesign.problem.source import read_source
+from evodesign.reproduction.claims2023 import FAILED, LOGGED
 
 UNSCALED_KG = {"root_link": 2.67135, "torso_1": 1.81255, "torso_2": 1.45349, "chest": 5.75757}
 """Masses in model_modified_NL.urdf, which are those of the unscaled robot."""

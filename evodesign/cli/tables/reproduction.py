@@ -8,10 +8,10 @@ from pathlib import Path
 from rich.markup import escape
 
 from evodesign.analysis.failures import causes
-from evodesign.analysis.paper_claims import PAPER_OPTIMISED, Claim, TorqueNormsByHeight
 from evodesign.cli.output import rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
-from evodesign.report.reproduction import Reproduction
+from evodesign.reproduction.claims2022 import PAPER_OPTIMISED, Claim, TorqueNormsByHeight
+from evodesign.reproduction.files2022 import Reproduction
 
 
 def torque_table(done: Reproduction) -> FittedTable:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from evodesign.analysis.sequel_claims import FAILED, LOGGED
 from evodesign.cli.output import rounded
 from evodesign.cli.tables.reproduction import verdict_lines
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
-from evodesign.report.sequel import SequelReproduction
+from evodesign.reproduction.claims2023 import FAILED, LOGGED
+from evodesign.reproduction.files2023 import SequelReproduction
 
 
 def robots_table(done: SequelReproduction) -> FittedTable:

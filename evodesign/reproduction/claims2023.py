@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evodesign.analysis.paper_claims import ALIKE, Claim
+from evodesign.reproduction.claims2022 import ALIKE, Claim
 
 LOGGED: Mapping[str, float] = {
     "log_1": 0.1862234773970584,

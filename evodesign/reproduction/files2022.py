@@ -18,13 +18,6 @@ from typing import Any
 
 import msgspec
 
-from evodesign.analysis.paper_claims import (
-    PAPER_OPTIMISED,
-    PAPER_ORIGINAL,
-    Claim,
-    TorqueNorms,
-    TorqueNormsByHeight,
-)
 from evodesign.errors import InputError
 from evodesign.files import write_whole
 from evodesign.mechanics.scene import HUMAN, ROBOT
@@ -33,6 +26,13 @@ from evodesign.report.figures.joint_torques import torque_boxes
 from evodesign.report.figures.paint import write_figure
 from evodesign.report.figures.posture_figure import posture_figure
 from evodesign.report.scene_models import SceneModels, placed_scene
+from evodesign.reproduction.claims2022 import (
+    PAPER_OPTIMISED,
+    PAPER_ORIGINAL,
+    Claim,
+    TorqueNorms,
+    TorqueNormsByHeight,
+)
 from evodesign.runlog.run import RunLog
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_write import urdf_text

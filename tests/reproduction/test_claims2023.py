@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evodesign.analysis.sequel_claims import (
+from evodesign.reproduction.claims2023 import (
     FAILED,
     LOGGED,
     RobotFigures,

@@ -9,9 +9,9 @@ from typing import Any
 
 import msgspec
 
-from evodesign.analysis.paper_claims import Claim
-from evodesign.analysis.sequel_claims import LOGGED, RobotFigures, SearchFigures
-from evodesign.report.reproduction import write_robot
+from evodesign.reproduction.claims2022 import Claim
+from evodesign.reproduction.claims2023 import LOGGED, RobotFigures, SearchFigures
+from evodesign.reproduction.files2022 import write_robot
 from evodesign.runlog.run import RunLog
 from evodesign.tree.model import Tree
 

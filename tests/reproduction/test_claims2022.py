@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from evodesign.analysis.paper_claims import (
+from evodesign.reproduction.claims2022 import (
     PAPER_OPTIMISED,
     PAPER_ORIGINAL,
     TorqueNorms,
