@@ -46,9 +46,9 @@ from evodesign.human.measured_posture import (
 )
 from evodesign.mechanics.scene import Scene
 from evodesign.nlp.solver import SolverCache
-from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.pool.registry import make_pool
 from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.posture.seeking.start_portfolio import StartPortfolio
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.records import Assessment, Case, Hold, ProblemSource, Status, Task
 from evodesign.runlog.run import read_run

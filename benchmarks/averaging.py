@@ -29,11 +29,11 @@ from evodesign.evaluation.evaluate import Evaluator
 from evodesign.guess.problem_text import guessed_problem
 from evodesign.mechanics.scene import ROBOT
 from evodesign.nlp.solver import SolverCache
-from evodesign.posture.candidate import Candidate
 from evodesign.posture.check import AgentModel, Checker, sizes
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.joint import JointPostures
 from evodesign.posture.results import Instant
+from evodesign.posture.seeking.candidate import Candidate
 from evodesign.posture.symmetry import whole
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.meshes import with_meshes_beside

@@ -20,12 +20,12 @@ from benchmarks.inner_problem import HERE, Design, problem_at, random_designs
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, OverCases
 from evodesign.mechanics.scene import Scene
 from evodesign.nlp.solver import SolverCache
-from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import AgentPosture, CaseSolution, Instant
+from evodesign.posture.seeking.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.warm_start import start_from
 from evodesign.problem.build import DesignProblem

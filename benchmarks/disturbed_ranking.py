@@ -23,13 +23,13 @@ from scipy.stats import kendalltau, rankdata
 from benchmarks.inner_problem import HERE, Design, problem_at, random_designs
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
 from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp, Scene
-from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import CaseSolution
+from evodesign.posture.seeking.start_portfolio import Coverage, StartPortfolio
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Hold
 from evodesign.report.figures.paint import SEQUENCE, clean, new_figure, write_figure

@@ -25,13 +25,13 @@ from joblib import Parallel, delayed
 
 from benchmarks.inner_problem import DEFAULT, HERE, Design, known_at, problem_named, random_designs
 from evodesign.evaluation.evaluate import Evaluator
-from evodesign.nlp.landscape import Landscape
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, NEAR_HEIGHT, ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.meetings import with_meetings
 from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.posture.seeking.landscape import Landscape
 from evodesign.problem.build import DesignProblem
 from evodesign.quantities.design_result import DesignResult
 from evodesign.records import Status

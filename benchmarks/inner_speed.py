@@ -25,7 +25,6 @@ import numpy as np
 from benchmarks.inner_problem import HERE, Design, known_at, problem_at, random_designs
 from benchmarks.paper_formulation import measure, measure_ours, reaching_designs
 from evodesign.evaluation.evaluate import AssessmentFactory, Evaluator
-from evodesign.nlp.landscape import Landscape
 from evodesign.nlp.program import Start
 from evodesign.nlp.solver import RawSolution, Solver
 from evodesign.pool.joblib_pool import JoblibPool
@@ -33,6 +32,7 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.posture.seeking.landscape import Landscape
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Hold, Status
 

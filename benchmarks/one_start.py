@@ -18,12 +18,12 @@ import numpy as np
 from evodesign.human.measured_posture import HumanPosture
 from evodesign.human.population import population
 from evodesign.mechanics.scene import ROBOT, Payload, Scene
-from evodesign.nlp.landscape import cost_of
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.solver import RawSolution, SolverCache
 from evodesign.posture.formulations.person import PersonProblem
-from evodesign.posture.measured_starts import measured_starts
 from evodesign.posture.results import Array
+from evodesign.posture.seeking.landscape import cost_of
+from evodesign.posture.seeking.measured_starts import measured_starts
 from evodesign.posture.symmetry import half
 from evodesign.validation.compare import LARGE
 from evodesign.validation.posed import agent_of

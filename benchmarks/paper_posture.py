@@ -28,7 +28,7 @@ from evodesign.nlp.solver import RawSolution, Solver
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.results import AgentPosture, Instant
-from evodesign.posture.starts import fixed_starts
+from evodesign.posture.seeking.starts import fixed_starts
 from evodesign.posture.symmetry import whole
 from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.terms.load import LOAD_UNIT, force_along_x

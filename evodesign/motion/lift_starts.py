@@ -3,8 +3,8 @@
 Where the load's path is given, robot and person are coupled by little, with point grasps by the push alone:
 the best motion of one is the best one beside nearly every other. A person has many ways to lift a load, and
 holds at both ends lead to few of them: from 0.6 m the best of 24 random starts had half the squared torques
-of the others. So starts are chosen once per problem, as those of postures are (`nlp.start_training`): each
-has a motion of the person, and some move the robot's hold.
+of the others. So starts are chosen once per problem, as those of postures are
+(`posture.seeking.start_training`): each has a motion of the person, and some move the robot's hold.
 """
 
 from __future__ import annotations
@@ -18,11 +18,8 @@ from numpy.typing import NDArray
 from evodesign.mechanics.scene import HUMAN, ROBOT, scene_of
 from evodesign.motion.lift_program import LiftProgram
 from evodesign.motion.lifting import MOVED, lift_program, lift_starts, moved_posture
-from evodesign.nlp.landscape import NEAR, spread_designs
 from evodesign.nlp.program import Start
 from evodesign.nlp.solver import status_of
-from evodesign.nlp.start_portfolio import StartPortfolio
-from evodesign.nlp.start_training import Training, start_portfolio
 from evodesign.posture.check import Unchecked
 from evodesign.posture.design_checkers import can_be_built
 from evodesign.posture.formulations.reach import ReachProblem
@@ -31,6 +28,9 @@ from evodesign.posture.precompute.meetings import with_meetings
 from evodesign.posture.precompute.plan import PrecomputeSetting
 from evodesign.posture.precompute.precomputed import NO_STARTS, Precomputed
 from evodesign.posture.results import AgentPosture
+from evodesign.posture.seeking.landscape import NEAR, spread_designs
+from evodesign.posture.seeking.start_portfolio import StartPortfolio
+from evodesign.posture.seeking.start_training import Training, start_portfolio
 from evodesign.records import Hold, Lift, Status
 
 TRAINING = Training(designs=4, begun=4, random=8, portfolio=4)

@@ -12,17 +12,17 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from enum import StrEnum
 
-from evodesign.nlp.landscape import Landscape
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Start
 from evodesign.nlp.solver import RawSolution, SolverCache
-from evodesign.posture.candidate import Trial, case_solution
 from evodesign.posture.check import Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.joint import JointPostures
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import CaseSolution, Neighbour
+from evodesign.posture.seeking.candidate import Trial, case_solution
+from evodesign.posture.seeking.landscape import Landscape
 from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.records import ActiveLimit, Status

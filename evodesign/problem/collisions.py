@@ -13,7 +13,7 @@ from evodesign.collision.rules import LOAD, PLANES, BodyPair, CollisionRules
 from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.scene import ROBOT, Agent, Scene
-from evodesign.nlp.landscape import spread_designs
+from evodesign.posture.seeking.landscape import spread_designs
 from evodesign.problem.file import CollisionsTable, ProblemFile
 from evodesign.records import ProblemSource
 

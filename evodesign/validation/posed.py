@@ -7,7 +7,7 @@ each hand holds half of a weight, and the feet carry what gravity leaves over,
 
 with f_feet of least norm among those that balance the six rows of the root.
 
-Source: pinocchio's gravity terms h and Jacobians J; `posture.measured_starts` for postures from angles.
+Source: pinocchio's gravity terms h and Jacobians J; postures from angles: `posture.seeking.measured_starts`.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ from evodesign.mechanics.contact import SoleSize
 from evodesign.mechanics.floating_base import ROOT, BodyState
 from evodesign.mechanics.scene import HUMAN, Agent
 from evodesign.posture.check import AgentModel
-from evodesign.posture.measured_starts import posture_of_features
 from evodesign.posture.results import AgentPosture
+from evodesign.posture.seeking.measured_starts import posture_of_features
 from evodesign.posture.symmetry import Form, half
 
 Array = NDArray[np.float64]

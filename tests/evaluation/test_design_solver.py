@@ -11,10 +11,10 @@ from evodesign.evaluation.design_solver import LESS
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.program import Start
-from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import Attempt, CaseSolution, Neighbour
+from evodesign.posture.seeking.start_portfolio import Coverage, StartPortfolio
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Case, Hold, Status, Task
 

@@ -15,12 +15,12 @@ from evodesign.motion.lift_program import LiftProgram, LiftStart
 from evodesign.motion.lift_starts import lift_portfolio
 from evodesign.motion.lifting import MOVED, lift_program, lift_starts
 from evodesign.motion.solution import LiftSolution
-from evodesign.nlp.start_portfolio import StartPortfolio
-from evodesign.nlp.start_training import Training
 from evodesign.posture.precompute.keys import key_of
 from evodesign.posture.precompute.pieces import encoded_piece, with_piece
 from evodesign.posture.precompute.plan import Piece, Subject, lift_pieces
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
+from evodesign.posture.seeking.start_portfolio import StartPortfolio
+from evodesign.posture.seeking.start_training import Training
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Hold, Status
 from evodesign.tasks import Lift

@@ -13,13 +13,13 @@ from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, OverCases, PushedAt
 from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Scene
 from evodesign.nlp.solver import SolverCache
-from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import AgentPosture, CaseSolution, Instant
+from evodesign.posture.seeking.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.warm_start import start_from

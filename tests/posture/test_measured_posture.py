@@ -23,9 +23,9 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.joint import JointPostures
 from evodesign.posture.formulations.person import PersonProblem
 from evodesign.posture.formulations.reach import HIGHEST, ReachProblem
-from evodesign.posture.measured_starts import mean_posture
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.results import AgentPosture, CaseSolution
+from evodesign.posture.seeking.measured_starts import mean_posture
 from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import Form, half, symmetric_forms, whole
 from evodesign.posture.terms.measured_posture import MEASURED_POSTURE, any_person

@@ -16,7 +16,7 @@ from evodesign.posture.check import TOLERANCE, AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.joint import posture_program
 from evodesign.posture.formulations.person import person_program
-from evodesign.posture.starts import fixed_starts
+from evodesign.posture.seeking.starts import fixed_starts
 from evodesign.posture.symmetry import Form, half, symmetric_forms, whole
 from evodesign.posture.terms.floating_base import coordinate_ranges, joint_ranges
 from evodesign.posture.warm_start import instants_of, layout_of, start_from

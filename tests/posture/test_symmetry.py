@@ -11,14 +11,14 @@ from evodesign.design.parameter import DesignParameter, ParameterKind
 from evodesign.design.space import DesignSpace
 from evodesign.errors import ModelError
 from evodesign.mechanics.scene import HUMAN, ROBOT, Payload
-from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import CaseSolution
-from evodesign.posture.starts import PEOPLE, different_people
+from evodesign.posture.seeking.start_portfolio import Coverage, StartPortfolio
+from evodesign.posture.seeking.starts import PEOPLE, different_people
 from evodesign.posture.symmetry import half, symmetric_forms
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Case, Hold, Status

@@ -7,8 +7,8 @@ from typing import Any
 
 from evodesign.cli.output import rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
-from evodesign.nlp.start_portfolio import StartPortfolio
 from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.posture.seeking.start_portfolio import StartPortfolio
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Case
 

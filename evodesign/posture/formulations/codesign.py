@@ -35,11 +35,11 @@ from evodesign.nlp.program import Array, Expression, Program, Start, Variable
 from evodesign.nlp.solver import RawSolution, Solver
 from evodesign.posture.allocation import EffortWeights, shared_scene
 from evodesign.posture.assemble import CaseSymbols, Embodied, LoadCase, assemble
-from evodesign.posture.candidate import checked
 from evodesign.posture.check import AgentModel, Checker, sizes
 from evodesign.posture.limit_groups import Enforced
 from evodesign.posture.parting import parted
 from evodesign.posture.results import Attempt, CaseSolution, Instant
+from evodesign.posture.seeking.candidate import checked
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.posture.terms.base import TORQUE_UNIT, Residual
 from evodesign.posture.terms.floating_base import coordinate_ranges

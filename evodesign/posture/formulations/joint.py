@@ -19,7 +19,6 @@ import casadi as ca
 import numpy as np
 
 from evodesign.mechanics.scene import HUMAN, ROBOT
-from evodesign.nlp.landscape import NEAR, Landscape
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Program, Start
 from evodesign.nlp.sensitivity import SolutionSensitivity
@@ -27,17 +26,18 @@ from evodesign.nlp.solver import RawSolution, Solver, SolverCache
 from evodesign.posture.active_limits import LimitSlopes, priced
 from evodesign.posture.allocation import shared_scene, shared_weights
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, total
-from evodesign.posture.candidate import Candidate, Finishing, Trial, cheapest, checked
 from evodesign.posture.check import Checker
-from evodesign.posture.exchange import Exchange
 from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.formulations.person import PersonProblem
 from evodesign.posture.load_cases import WorstCase, aggregated
-from evodesign.posture.measured_starts import POSTURE, measured_starts
 from evodesign.posture.parting import Parted, parted
 from evodesign.posture.results import CaseSolution, Instant, Neighbour
+from evodesign.posture.seeking.candidate import Candidate, Finishing, Trial, cheapest, checked
+from evodesign.posture.seeking.exchange import Exchange
+from evodesign.posture.seeking.landscape import NEAR, Landscape
+from evodesign.posture.seeking.measured_starts import POSTURE, measured_starts
+from evodesign.posture.seeking.starts import different_people, fixed_starts, named_starts, universal_starts
 from evodesign.posture.solution_derivative import PostureDerivative, found_again
-from evodesign.posture.starts import different_people, fixed_starts, named_starts, universal_starts
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.measured_posture import any_person, person_parameters

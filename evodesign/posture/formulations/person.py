@@ -22,9 +22,9 @@ from evodesign.nlp.solver import RawSolution, Solver, SolverCache
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
 from evodesign.posture.check import TOLERANCE, AgentModel, near_bodies
 from evodesign.posture.formulations.base import program_key
-from evodesign.posture.measured_starts import measured_starts
 from evodesign.posture.parting import parted
-from evodesign.posture.starts import person_starts
+from evodesign.posture.seeking.measured_starts import measured_starts
+from evodesign.posture.seeking.starts import person_starts
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.load import any_load, force_along_x
 from evodesign.posture.terms.measured_posture import any_person, person_parameters

@@ -24,7 +24,6 @@ import casadi as ca
 import numpy as np
 
 from evodesign.mechanics.scene import ROBOT, Scene
-from evodesign.nlp.landscape import Landscape
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import ConstraintBlock, Program, Start, Variable
@@ -35,8 +34,9 @@ from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_han
 from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.parting import parted
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, PersonReach, Precomputed
+from evodesign.posture.seeking.landscape import Landscape
+from evodesign.posture.seeking.starts import person_starts, universal_starts
 from evodesign.posture.solution_derivative import ReachDerivative
-from evodesign.posture.starts import person_starts, universal_starts
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.registry import TERMS

@@ -16,12 +16,9 @@ import numpy as np
 
 from evodesign.collision.rules import BodyPair
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
-from evodesign.nlp.landscape import Design, spread_designs
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import Start
 from evodesign.nlp.solver import BRIEF, SolverCache
-from evodesign.nlp.start_portfolio import StartPortfolio
-from evodesign.nlp.start_training import USUAL, start_portfolio
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
 from evodesign.posture.postures import PostureProblem
@@ -32,6 +29,9 @@ from evodesign.posture.precompute.plan import (
     Subject,
 )
 from evodesign.posture.precompute.precomputed import HeldLoads, PersonReach, Precomputed
+from evodesign.posture.seeking.landscape import Design, spread_designs
+from evodesign.posture.seeking.start_portfolio import StartPortfolio
+from evodesign.posture.seeking.start_training import USUAL, start_portfolio
 from evodesign.records import Case, Hold, Status
 
 LEARNED_FROM, LOOKED_AT = 96, 8

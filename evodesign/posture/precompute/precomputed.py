@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 import msgspec
 
 from evodesign.collision.rules import BodyPair
-from evodesign.nlp.landscape import Design
 from evodesign.nlp.program import Start
-from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
+from evodesign.posture.seeking.landscape import Design
+from evodesign.posture.seeking.start_portfolio import Coverage, StartPortfolio
 from evodesign.records import Case, Lift, Task
 
 NO_STARTS = StartPortfolio((), Coverage(0, 0, 0.0))

@@ -20,9 +20,9 @@ from typing import Generic
 import numpy as np
 from numpy.typing import NDArray
 
-from evodesign.nlp.landscape import Costs, Design, End, Searched, cost_of
 from evodesign.nlp.program import Start
-from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
+from evodesign.posture.seeking.landscape import Costs, Design, End, Searched, cost_of
+from evodesign.posture.seeking.start_portfolio import Coverage, StartPortfolio
 
 SAME = 1e-3
 """Share of their costs by which two optima of one design differ at most that are one."""

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from evodesign.nlp.solver import Multipliers, RawSolution
-from evodesign.posture.candidate import MAY_GAIN, Candidate, Finishing, Trial, cheapest, checked
+from evodesign.posture.seeking.candidate import MAY_GAIN, Candidate, Finishing, Trial, cheapest, checked
 from evodesign.records import Status
 
 NOTHING = np.zeros(0)

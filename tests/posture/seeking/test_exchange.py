@@ -10,13 +10,13 @@ import pytest
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.program import Program, Start
 from evodesign.nlp.solver import RawSolution
-from evodesign.nlp.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.check import AgentModel, Checker
-from evodesign.posture.exchange import PROMISE, Exchange
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.posture.seeking.exchange import PROMISE, Exchange
+from evodesign.posture.seeking.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.warm_start import instants_of, layout_of
 from evodesign.problem.build import DesignProblem

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 from evodesign.evaluation.evaluate import Evaluator
-from evodesign.nlp.landscape import Landscape, spread_designs
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import ConstraintBlock, Program, Start, Variable
 from evodesign.nlp.solver import RawSolution, Solver
-from evodesign.nlp.start_portfolio import Coverage
-from evodesign.nlp.start_training import Training, _cover, start_portfolio
 from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.posture.seeking.landscape import Landscape, spread_designs
+from evodesign.posture.seeking.start_portfolio import Coverage
+from evodesign.posture.seeking.start_training import Training, _cover, start_portfolio
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Status
 

@@ -11,7 +11,7 @@ import pytest
 from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.program import Program, Variable
 from evodesign.posture.assemble import Slot
-from evodesign.posture.starts import universal_starts
+from evodesign.posture.seeking.starts import universal_starts
 
 
 def program() -> Program:
