@@ -68,7 +68,7 @@ class Bench:
         starts = self._landscape.starts
         if like is not None:
             like_known = start_from(
-                self._landscape.solver.program, symmetric_forms(self._scene), [Instant(0.0, like)]
+                self._landscape.seeker.program, symmetric_forms(self._scene), [Instant(0.0, like)]
             )
             starts = (like_known, *starts)
         known = Precomputed(

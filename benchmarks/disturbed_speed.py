@@ -73,7 +73,7 @@ def measured(problem: DesignProblem, scene: Scene, designs: list[Design]) -> Cos
             began = time.process_time()
             solves = reach.solves(design, sense)
             reach_times.append((time.process_time() - began) / len(solves))
-    program = landscapes[0].solver.program
+    program = landscapes[0].seeker.program
     return Cost(
         symbols=program.symbols.numel(),
         rows=program.rows.numel(),

@@ -57,7 +57,7 @@ def sweep(problem: DesignProblem, allocation: str, height: float, starts: int) -
             continue
         best = min(solved, key=lambda end: end.cost)
         tried.append(best.values)
-        layout = layout_of(landscape.solver.program)
+        layout = layout_of(landscape.seeker.program)
         instant = instants_of(layout, symmetric_forms(scene), scene, best.values)[0]
         found = instant.postures
         checker = Checker(

@@ -17,13 +17,12 @@ from numpy.typing import NDArray
 
 from evodesign.motion.lift_program import LiftProgram, LiftStart
 from evodesign.nlp.method import Ending
-from evodesign.nlp.solver import ROUNDS, UNSETTLED, status_of
+from evodesign.nlp.solver import status_of
 from evodesign.posture.parting import Meetings
+from evodesign.posture.seeking import settling
+from evodesign.posture.seeking.budget import BUDGET
 from evodesign.posture.terms.collisions import NUMBERS
 from evodesign.records import Lift, Status
-
-GAIN = 1e-4
-"""Share of its cost by which a motion must get better to be solved again."""
 
 Array = NDArray[np.float64]
 Chosen = dict[int, Array]
@@ -52,6 +51,8 @@ class LiftSolve:
 class PartedLift:
     """Solves of one lift of one design that go on until no bodies overlap that rows can part.
 
+    They are solves of a program with rows that can be switched on (`posture.seeking.settling.Switched`).
+
     Args:
         program: with the lift's knots.
         lift: what is asked for.
@@ -61,66 +62,64 @@ class PartedLift:
 
     def __init__(self, program: LiftProgram, lift: Lift, design: Sequence[float], mass: float) -> None:
         self._program, self._lift, self._design, self._mass = program, lift, design, mass
+        self._parted = program.parted or program
 
     def settled(self, first: LiftSolve) -> LiftSolve:
-        """A solve with the rows on that it violates; as it is where it violates none.
-
-        Where going on from it leads nowhere, the solve begins anew with all rows on.
-        """
-        parted = self._program.parted
-        if parted is None or not first.solved:
+        """A solve with the rows on that it violates; as it is where it violates none."""
+        if self._program.parted is None:
             return first
-        found = self._without_overlaps(parted, first)
-        if not found.solved and not first.start.parts_bodies:
-            on = self._changed(parted, first.start, first.start.symbols, Meetings.begun)
-            begun = self._solved_from(first, first.start.symbols, first.start if on is None else on)
-            found = self._without_overlaps(parted, begun)
-        return self._bettered(parted, found) if found.start.parts_bodies else found
+        found = settling.parted(self, first)
+        return settling.bettered(self, found, BUDGET.part_lifts_better)
 
-    def _without_overlaps(self, parted: LiftProgram, solve: LiftSolve) -> LiftSolve:
-        """Rows are switched on until no pair overlaps that has one."""
-        for _ in range(ROUNDS):
-            if not solve.solved:
-                return solve
-            on = self._changed(parted, solve.start, solve.ending.symbols, Meetings.violated)
-            on = self._off_planes(parted, solve) if on is None else on
-            if on is None:
-                return solve
-            solve = self._solved_from(solve, solve.ending.symbols, on)
-        return replace(solve, ending=replace(solve.ending, word=UNSETTLED)) if solve.solved else solve
+    def is_solved(self, solve: LiftSolve, /) -> bool:
+        """Whether there is a motion."""
+        return solve.solved
 
-    def _off_planes(self, parted: LiftProgram, solve: LiftSolve) -> LiftStart | None:
-        """A start with the rows of planes; None where it has them already, or no plane is crossed."""
-        start = replace(solve.start, directions=parted.no_directions)
-        moments = parted.meetings_at(self._lift, start, solve.ending.symbols, self._design, self._mass)
-        return start if not solve.start.parts_bodies and parted.crosses_planes(moments) else None
+    def cost(self, solve: LiftSolve, /) -> float:
+        """Of its last iterate."""
+        return solve.ending.cost
 
-    def _bettered(self, parted: LiftProgram, solve: LiftSolve) -> LiftSolve:
-        """Pairs that rows hold in touch are parted along better directions, as long as the motion gains."""
-        for _ in range(ROUNDS):
-            if not solve.solved:
-                break
-            least = GAIN * abs(solve.ending.cost)
-            on = self._better_directions(parted, solve, least)
-            if on is None:
-                break
-            other = self._without_overlaps(parted, self._solved_from(solve, solve.ending.symbols, on))
-            if not (other.solved and other.ending.cost < solve.ending.cost - least):
-                break
-            solve = other
-        return solve
+    def has_rows(self, solve: LiftSolve, /) -> bool:
+        """Whether rows are on."""
+        return solve.start.parts_bodies
 
-    def _better_directions(self, parted: LiftProgram, solve: LiftSolve, least: float) -> LiftStart | None:
-        """A start with better directions; None where they gain less than the least that counts, if any."""
-        multipliers, gains = iter(parted.rows_at(solve.ending.rows)), list[float]()
+    began_with_rows = has_rows
+
+    def violated(self, solve: LiftSolve, /) -> LiftSolve | None:
+        """The solve that goes on with bodies parted that overlap; None where none do that can be parted."""
+        on = self._changed(solve.start, solve.ending.symbols, Meetings.violated)
+        on = self._off_planes(solve) if on is None else on
+        return None if on is None else self._solved_from(solve, solve.ending.symbols, on)
+
+    def anew(self, first: LiftSolve, _: LiftSolve, /) -> LiftSolve:
+        """The solve that begins where the first one began, with all bodies parted."""
+        on = self._changed(first.start, first.start.symbols, Meetings.begun)
+        return self._solved_from(first, first.start.symbols, first.start if on is None else on)
+
+    def better(self, solve: LiftSolve, least: float, /) -> LiftSolve | None:
+        """The solve that goes on with pairs parted along better directions; None where they gain little."""
+        multipliers, gains = iter(self._parted.rows_at(solve.ending.rows)), list[float]()
 
         def better(meetings: Meetings, at: Sequence[Array], held: Array) -> Chosen:
             found, gain = meetings.better(at, held, meetings.prices(next(multipliers)))
             gains.append(gain)
             return found
 
-        on = self._changed(parted, solve.start, solve.ending.symbols, better)
-        return on if sum(gains) > least else None
+        on = self._changed(solve.start, solve.ending.symbols, better)
+        if on is None or sum(gains) <= least:
+            return None
+        return self._solved_from(solve, solve.ending.symbols, on)
+
+    def unsettled(self, solve: LiftSolve, /) -> LiftSolve:
+        """A solve as one that failed."""
+        return replace(solve, ending=replace(solve.ending, word=settling.UNSETTLED))
+
+    def _off_planes(self, solve: LiftSolve) -> LiftStart | None:
+        """A start with the rows of planes; None where it has them already, or no plane is crossed."""
+        parted = self._parted
+        start = replace(solve.start, directions=parted.no_directions)
+        moments = parted.meetings_at(self._lift, start, solve.ending.symbols, self._design, self._mass)
+        return start if not solve.start.parts_bodies and parted.crosses_planes(moments) else None
 
     def _solved_from(self, before: LiftSolve, symbols: Array, start: LiftStart) -> LiftSolve:
         """The solve that goes on from symbols with the directions of a start, with the work of both."""
@@ -131,7 +130,6 @@ class PartedLift:
 
     def _changed(
         self,
-        parted: LiftProgram,
         start: LiftStart,
         symbols: Array,
         chosen: Callable[[Meetings, Sequence[Array], Array], Chosen],
@@ -139,11 +137,11 @@ class PartedLift:
         """A start with directions that are chosen at knots and half-way between; None where none are new.
 
         Args:
-            parted: the program with all rows.
             start: with the directions until now.
             symbols: of the motion.
             chosen: new numbers by meeting, from the meetings, their functions' arguments and numbers now.
         """
+        parted = self._parted
         if not start.parts_bodies:
             start = replace(start, directions=parted.no_directions)
         directions, new = start.directions.copy(), False

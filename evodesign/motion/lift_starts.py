@@ -28,7 +28,8 @@ from evodesign.posture.precompute.meetings import with_meetings
 from evodesign.posture.precompute.plan import PrecomputeSetting
 from evodesign.posture.precompute.precomputed import NO_STARTS, Precomputed
 from evodesign.posture.results import AgentPosture
-from evodesign.posture.seeking.landscape import NEAR, spread_designs
+from evodesign.posture.seeking.budget import BUDGET
+from evodesign.posture.seeking.landscape import spread_designs
 from evodesign.posture.seeking.start_portfolio import StartPortfolio
 from evodesign.posture.seeking.start_training import Training, start_portfolio
 from evodesign.records import Hold, Lift, Status
@@ -105,7 +106,7 @@ class _LiftLandscape:
 
     def good(self, costs: Array, best: Array) -> NDArray[np.bool_]:
         """Within 1 % of the best one."""
-        relative, absolute = NEAR
+        relative, absolute = BUDGET.near
         return np.asarray(costs <= best + relative * np.abs(best) + absolute)
 
     def random_start(self, rng: np.random.Generator) -> Start:

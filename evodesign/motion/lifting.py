@@ -32,6 +32,7 @@ from evodesign.nlp.solver import status_of
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.results import AgentPosture, Attempt, CaseSolution
+from evodesign.posture.seeking.budget import BUDGET
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.records import Lift, Status, worst_status
 
@@ -42,9 +43,6 @@ REFINEMENTS = 3
 
 MOVED = "robot.moved"
 """How a start moves the robot's hold: at the beginning (0) or the end (1), base [m], joints [rad]."""
-
-DISTINCT = 1e-5
-"""Share of its cost by which one motion must exceed another not to be the same."""
 
 OPEN = 1e-3
 """By how much [m] hands and feet of a start may be out of place."""
@@ -323,7 +321,7 @@ def _without_overlaps(parting: PartedLift, solves: Mapping[str, LiftSolve]) -> d
     for name, solve in sorted(solves.items(), key=lambda pair: pair[1].ending.cost):
         if not solve.solved or solve.ending.cost >= least:
             continue
-        if last and solve.ending.cost <= solves[last].ending.cost * (1.0 + DISTINCT):
+        if last and solve.ending.cost <= solves[last].ending.cost * (1.0 + BUDGET.same):
             ending = replace(found[last].ending, iterations=solve.ending.iterations)
             found[name] = LiftSolve(found[last].start, ending, solve.seconds)
             continue

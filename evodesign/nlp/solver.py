@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import OrderedDict
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from typing import Any
@@ -66,22 +66,8 @@ class RawSolution:
     start: Start = field(default_factory=dict)
 
 
-ROUNDS = 6
-"""How often rows are switched on, one solve after the other."""
-
-FREE = 1e-4
-"""Share of its cost that a solution must save per metre [1/m] by a row's yielding, for the row to hold it."""
-
-BRIEF = 60
-"""Iterations after which one of several solves is given up: 9 of 10 that succeed take less than 50."""
-
-WORTH = 1e-3
-"""Share of its cost that a solution must gain by parting bodies in other ways to be solved again."""
-
 KEPT = 16
 """Solvers that a process keeps for its next work; a problem has about three for each person."""
-
-UNSETTLED = "rows remain that are to be switched on"
 
 _STATUS = {
     "Solve_Succeeded": Status.SOLVED,
@@ -127,11 +113,6 @@ class Solver:
         return self.with_options(replace(self.options, near=True))
 
     @cached_property
-    def brief(self) -> Solver:
-        """The same for solves that are given up early."""
-        return self.with_options(replace(self.options, iterations=min(BRIEF, self.options.iterations)))
-
-    @cached_property
     def by_ipopt(self) -> Solver:
         """The same program for what the native method does not solve; too seldom to compile for."""
         options = replace(self.options, compiled=False)
@@ -170,24 +151,6 @@ class Solver:
             method=self._method.name,
         )
 
-    def solved_each(
-        self, parameters: Mapping[str, Any], starts: Sequence[Mapping[str, Array]]
-    ) -> list[RawSolution]:
-        """Where starts lead to; solves that take long are given up unless all of them do."""
-        if len(starts) == 1:
-            return [self.solve(parameters, start) for start in starts]
-        ends = [self.brief.solve(parameters, start) for start in starts]
-        if any(raw.status is Status.SOLVED for raw in ends):
-            return ends
-        return [
-            self.solve(parameters, start) if raw.status is Status.ITERATION_LIMIT else raw
-            for start, raw in zip(starts, ends, strict=True)
-        ]
-
-    def continued(self, parameters: Mapping[str, Any], raw: RawSolution) -> RawSolution:
-        """What a solve that was given up leads to when it has as long again."""
-        return replace(after(raw, self.brief.solve(parameters, raw.values)), start=raw.start)
-
     @cached_property
     def parted(self) -> Solver:
         """The same with all rows, for starts that switch some on."""
@@ -204,77 +167,6 @@ class Solver:
     def _is_parted(self, start: Start) -> bool:
         switches = self.program.switches
         return switches is not None and not self.program.switched and has_any(switches.names, start)
-
-    def settled(
-        self, parameters: Mapping[str, Any], raw: RawSolution, gain: float = 0.0, *, patient: bool = True
-    ) -> RawSolution:
-        """A solution with the rows on that it violates; as it is where it violates none.
-
-        Where going on from it leads nowhere, the solve begins anew with these rows on.
-
-        Args:
-            parameters: that it was found for.
-            raw: the solution; one that failed stays as it is.
-            gain: of its cost, below which rows are not kept in better ways; if infinite, none are sought.
-            patient: whether solves that take long are not given up.
-        """
-        switches, solver = self.program.switches, self if patient else self.brief
-        if switches is None or raw.status is not Status.SOLVED:
-            return raw
-        found = solver._without_violations(parameters, raw)
-        if found is raw and not has_any(switches.names, raw.values):
-            return raw
-        if found.status is not Status.SOLVED and not has_any(switches.names, raw.start):
-            start = {**raw.start, **switches.begun(raw.start, parameters, found.values)}
-            found = solver._without_violations(parameters, solver.solve(parameters, start))
-        return self.bettered(parameters, found, gain)
-
-    def needed(self, raw: RawSolution) -> Start:
-        """A solution's values without the rows on that do not hold it: for solves that begin close to it."""
-        switches = self.program.switches
-        if switches is None or raw.status is not Status.SOLVED or not has_any(switches.names, raw.values):
-            return raw.values
-        on = switches.needed(raw.values, raw.multipliers.constraints, FREE * abs(raw.cost))
-        return {**raw.values, **on}
-
-    def bettered(self, parameters: Mapping[str, Any], found: RawSolution, gain: float) -> RawSolution:
-        """A solution whose rows are kept in better ways, as long as it gains more by them than `gain`."""
-        switches = self.program.switches
-        for _ in range(ROUNDS):
-            if switches is None or found.status is not Status.SOLVED or gain == np.inf:
-                break
-            least, rows = max(gain, WORTH * abs(found.cost)), found.multipliers.constraints
-            better = switches.better(found.values, parameters, rows, least)
-            if not better:
-                break
-            other = self.near._solved_from(parameters, found, better)
-            other = self._without_violations(parameters, other)
-            if other.status is not Status.SOLVED or not other.cost < found.cost - least:
-                break
-            found = other
-        return found
-
-    def _without_violations(self, parameters: Mapping[str, Any], raw: RawSolution) -> RawSolution:
-        """Rows are switched on until none is violated."""
-        switches = self.program.switches
-        for _ in range(ROUNDS):
-            if switches is None or raw.status is not Status.SOLVED:
-                return raw
-            on = switches.violated(raw.values, parameters)
-            if not on:
-                return raw
-            raw = self._solved_from(parameters, raw, on)
-        return replace(raw, status=Status.NUMERICAL_FAILURE, reason=UNSETTLED)
-
-    def _solved_from(self, parameters: Mapping[str, Any], raw: RawSolution, on: Start) -> RawSolution:
-        """The solve that goes on from another one, with rows switched on."""
-        return replace(after(raw, self.solve(parameters, {**raw.values, **on})), start=raw.start)
-
-
-def after(first: RawSolution, then: RawSolution) -> RawSolution:
-    """A solve that began where another one ended, with the work of both."""
-    iterations, seconds = first.iterations + then.iterations, first.seconds + then.seconds
-    return replace(then, iterations=iterations, seconds=seconds)
 
 
 def status_of(word: str) -> Status:

@@ -168,4 +168,4 @@ def test_whole_postures_are_the_refuge_and_native_as_well(
 def whole_rows(setting: Setting) -> int:
     """Number of symbols of the whole program."""
     off = PostureProblem(replace(setting, options=SolverOptions()), Symmetry.OFF)
-    return int(off.landscape(Hold(height_m=1.0)).solver.program.symbols.numel())
+    return int(off.landscape(Hold(height_m=1.0)).seeker.program.symbols.numel())

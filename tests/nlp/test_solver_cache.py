@@ -8,7 +8,7 @@ import numpy as np
 
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.program import Program
-from evodesign.nlp.solver import BRIEF, Solver, SolverCache
+from evodesign.nlp.solver import Solver, SolverCache
 from evodesign.records import Status
 from tests.nlp.native.programs import RandomProgram, random_program
 
@@ -39,11 +39,9 @@ def test_a_program_is_built_once_and_solved_by_each_options() -> None:
 
 def test_options_of_options_stay_apart() -> None:
     solver = Solver(random_program(4, convex=False).program, IPOPT)
-    assert solver.brief.options == replace(IPOPT, iterations=BRIEF)
     short = solver.with_options(replace(IPOPT, iterations=2))
-    assert (short.brief.options.iterations, short.near.options.iterations) == (2, 2)
+    assert short.near.options.iterations == 2
     assert short.near.options.near
-    assert short.near.brief.options == short.near.options
     assert short.by_ipopt.options == replace(short.options, compiled=False)
     assert solver.near.by_ipopt.options.near
 

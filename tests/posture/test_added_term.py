@@ -68,8 +68,8 @@ def lowest(bench: Bench, before: CaseSolution, monkeypatch: pytest.MonkeyPatch) 
 
 @pytest.mark.usefixtures("lowest")
 def test_it_enters_every_formulation(problem: DesignProblem, bench: Bench) -> None:
-    joint = PostureProblem(bench.setting, Symmetry.ON).landscape(HOLD).solver.program
-    whole = PostureProblem(bench.setting, Symmetry.OFF).landscape(HOLD).solver.program
+    joint = PostureProblem(bench.setting, Symmetry.ON).landscape(HOLD).seeker.program
+    whole = PostureProblem(bench.setting, Symmetry.OFF).landscape(HOLD).seeker.program
     codesign = JointProblem(problem.scene, problem.space, (HOLD,), problem.joint).program
     for program in (joint, whole, codesign):
         assert {c.name for c in program.constraints} >= ROWS

@@ -313,14 +313,15 @@ def test_no_bodies_of_a_solved_posture_overlap(
 def test_a_solution_stays_without_the_rows_that_do_not_hold_it(apart: DesignProblem, met: dict) -> None:
     """With every row on, and with those that are needed: the same posture; without those, another one."""
     setting = replace(setting_of(apart), scene=with_meetings(apart.scene, met))
-    solver = ReachProblem(setting, symmetric=True)._solver
+    seeker = ReachProblem(setting, symmetric=True)._seeker
+    solver = seeker.solver
     (name,) = solver.program.switches.names
     values = apart.space.unscaled(apart.scene.robot.tree)
     parameters = {"design": values, "mass": apart.scene.payload.mass, "sense": LOWEST, LEAST: 0.0}
     start = {HEIGHT: [1.0], **solver.program.switches.begun({HEIGHT: [1.0]}, parameters)}
-    found = solver.settled(parameters, solver.solve(parameters, start))
+    found = seeker.settled(parameters, solver.solve(parameters, start))
     assert found.status is Status.SOLVED
-    needed = solver.needed(found)
+    needed = seeker.needed(found)
     on, kept = (np.array(each[name]).reshape(-1, NUMBERS)[:, 0] != 0.0 for each in (found.values, needed))
     assert 0 < kept.sum() < on.sum()
     again = solver.near.solve(parameters, needed)

@@ -53,7 +53,7 @@ def postures_in(
         return bare
     landscape = bare.landscape(HOLD)
     forms = symmetric_forms(scene) if symmetry is Symmetry.ON else (whole(scene.robot), whole(scene.human))
-    start = start_from(landscape.solver.program, forms, [Instant(0.0, like)])
+    start = start_from(landscape.seeker.program, forms, [Instant(0.0, like)])
     portfolio = StartPortfolio((start,), Coverage(0, 0, 0.0))
     return PostureProblem(
         setting, symmetry, Precomputed(postures={Case(person="", payload="", task=HOLD): portfolio}), solvers

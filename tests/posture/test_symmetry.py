@@ -17,8 +17,9 @@ from evodesign.posture.formulations.reach import ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import CaseSolution
+from evodesign.posture.seeking.budget import BUDGET
 from evodesign.posture.seeking.start_portfolio import Coverage, StartPortfolio
-from evodesign.posture.seeking.starts import PEOPLE, different_people
+from evodesign.posture.seeking.starts import different_people
 from evodesign.posture.symmetry import half, symmetric_forms
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Case, Hold, Status
@@ -127,7 +128,7 @@ def test_the_people_of_all_starts_are_tried_beside_the_best_robot(problem: Desig
 def test_people_who_stand_most_differently_stand_for_all(problem: DesignProblem) -> None:
     setting = Setting(problem.scene, problem.space, problem.weights, problem.options)
     half_program, program = (
-        PostureProblem(setting, symmetry).landscape(Hold(height_m=1.0)).solver.program
+        PostureProblem(setting, symmetry).landscape(Hold(height_m=1.0)).seeker.program
         for symmetry in (Symmetry.ON, Symmetry.OFF)
     )
     half_start, start = (
@@ -136,7 +137,7 @@ def test_people_who_stand_most_differently_stand_for_all(problem: DesignProblem)
     turns = [0.05 * number for number in range(24)]
     starts = [{**start, "human.joints": start["human.joints"] + turn} for turn in turns]
     found = different_people(program, [half_start, *starts, {"robot.joints": start["robot.joints"]}])
-    assert len(found) == PEOPLE == 16
+    assert len(found) == BUDGET.people == 16
     assert [person["human.joints"][0] for person in found[:2]] == [turns[0], turns[-1]]
     assert abs(found[2]["human.joints"][0] - 0.55) < 0.1
     assert not any(name.startswith("robot") for person in found for name in person)

@@ -40,6 +40,7 @@ from evodesign.posture.limit_groups import Enforced
 from evodesign.posture.parting import parted
 from evodesign.posture.results import Attempt, CaseSolution, Instant
 from evodesign.posture.seeking.candidate import checked
+from evodesign.posture.seeking.seeker import Seeker
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.posture.terms.base import TORQUE_UNIT, Residual
 from evodesign.posture.terms.floating_base import coordinate_ranges
@@ -155,7 +156,7 @@ class JointProblem:
 
     def _from(self, name: str, genome: Genome, postures: Start) -> JointSolution:
         start = _inside(self.program, {GENOME: np.array(genome), **postures})
-        raw = self._solver.settled({}, self._solver.solve({}, start))
+        raw = Seeker(self._solver).settled({}, self._solver.solve({}, start))
         design = _values(self._space, raw.values[GENOME].tolist())
         if raw.status is Status.SOLVED:
             return self._checked(name, design, raw)

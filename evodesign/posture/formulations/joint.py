@@ -32,10 +32,12 @@ from evodesign.posture.formulations.person import PersonProblem
 from evodesign.posture.load_cases import WorstCase, aggregated
 from evodesign.posture.parting import Parted, parted
 from evodesign.posture.results import CaseSolution, Instant, Neighbour
+from evodesign.posture.seeking.budget import BUDGET
 from evodesign.posture.seeking.candidate import Candidate, Finishing, Trial, cheapest, checked
 from evodesign.posture.seeking.exchange import Exchange
-from evodesign.posture.seeking.landscape import NEAR, Landscape
+from evodesign.posture.seeking.landscape import Landscape
 from evodesign.posture.seeking.measured_starts import POSTURE, measured_starts
+from evodesign.posture.seeking.seeker import Seeker
 from evodesign.posture.seeking.starts import different_people, fixed_starts, named_starts, universal_starts
 from evodesign.posture.solution_derivative import PostureDerivative, found_again
 from evodesign.posture.symmetry import Form
@@ -76,6 +78,10 @@ class JointPostures:
     def _solver(self) -> Solver:
         key = program_key(self.name, self._setting, self._forms, self._kind.__qualname__)
         return self._solvers.solver(key, self._program, self._setting.options)
+
+    @cached_property
+    def _seeker(self) -> Seeker:
+        return Seeker(self._solver)
 
     @cached_property
     def _undisturbed(self) -> JointPostures | None:
@@ -136,10 +142,10 @@ class JointPostures:
         """The program's cost for a task."""
         program, people = self._solver.program, self._known_people(task)
         return Landscape(
-            self._solver,
+            self._seeker,
             self._beside(task),
             self._fixed(task),
-            *NEAR,
+            *BUDGET.near,
             begun=self._begun,
             universal=universal_starts(program, people),
             known=people,
@@ -219,7 +225,7 @@ class JointPostures:
         """The postures of another design near those of a solution."""
         task, solver = solution.case.task, self._solver
         parameters = {"design": design, **self._beside(task)}
-        start = self._begun(solver.needed(raw), parameters)
+        start = self._begun(self._seeker.needed(raw), parameters)
         raw = solver.near.solve(parameters, start)  # the check comes later
         if raw.status is not Status.SOLVED:
             return None
@@ -326,10 +332,10 @@ class JointPostures:
     ) -> Trial:
         """The best of where starts led, settled with a gain and checked."""
         finishing = Finishing(
-            lambda raw, last: self._solver.settled(parameters, raw, gain, patient=last),
-            lambda raw, least: self._solver.bettered(parameters, raw, max(gain, least)),
+            lambda raw, last: self._seeker.settled(parameters, raw, gain, patient=last),
+            lambda raw, least: self._seeker.bettered(parameters, raw, max(gain, least)),
             lambda start, raw: self._candidate(start, raw, task, checker),
-            lambda raw: self._solver.continued(parameters, raw),
+            lambda raw: self._seeker.continued(parameters, raw),
         )
         return cheapest(self.name, ends, finishing)
 
@@ -344,7 +350,7 @@ class JointPostures:
     ) -> list[tuple[str, RawSolution]]:
         """Where starts lead to."""
         given = [(name, self._begun(start, parameters)) for name, start in starts]
-        raws = self._solver.solved_each(parameters, [start for _, start in given])
+        raws = self._seeker.ends(parameters, [start for _, start in given])
         return [(name, raw) for (name, _), raw in zip(given, raws, strict=True)]
 
     def _begun(self, start: Start, parameters: Mapping[str, Any]) -> Start:

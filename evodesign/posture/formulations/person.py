@@ -24,6 +24,7 @@ from evodesign.posture.check import TOLERANCE, AgentModel, near_bodies
 from evodesign.posture.formulations.base import program_key
 from evodesign.posture.parting import parted
 from evodesign.posture.seeking.measured_starts import measured_starts
+from evodesign.posture.seeking.seeker import Seeker
 from evodesign.posture.seeking.starts import person_starts
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.load import any_load, force_along_x
@@ -66,7 +67,7 @@ class PersonProblem:
     def solve(self, height: float, push: float, start: Mapping[str, Array]) -> RawSolution:
         """The person's posture at a height [m] under a push [N], from one start."""
         parameters = self.parameters(height, push)
-        return self.solver.settled(parameters, self.solver.solve(parameters, start))
+        return Seeker(self.solver).settled(parameters, self.solver.solve(parameters, start))
 
     def best_of_many(self, height: float, push: float) -> RawSolution | None:
         """The person's posture at a height [m] under a push [N], from many starts, always the same.

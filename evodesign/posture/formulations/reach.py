@@ -35,6 +35,7 @@ from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.parting import parted
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, PersonReach, Precomputed
 from evodesign.posture.seeking.landscape import Landscape
+from evodesign.posture.seeking.seeker import Seeker
 from evodesign.posture.seeking.starts import person_starts, universal_starts
 from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
@@ -151,6 +152,10 @@ class ReachProblem:
         return self._solvers.solver(key, self._program, self._setting.options)
 
     @cached_property
+    def _seeker(self) -> Seeker:
+        return Seeker(self._solver)
+
+    @cached_property
     def _sensitivity(self) -> SolutionSensitivity:
         return SolutionSensitivity(self._solver)
 
@@ -171,7 +176,7 @@ class ReachProblem:
         """Minus the highest (sense -1) or plus the lowest (sense 1) height [m]."""
         universal = tuple({**start, **height} for height in FIXED for start in universal_starts(self.program))
         return Landscape(
-            self._solver,
+            self._seeker,
             self._beside(sense),
             FIXED,
             0.0,
@@ -203,15 +208,16 @@ class ReachProblem:
         """From the portfolio, or fixed starts; a load as low as is asked for is held where the highest is."""
         starts = [filled(start, self.program) for start in self._starts[sense] or FIXED]
         parameters = {"design": design, **self._beside(sense)}
-        solver, ways = self._solver, [starts, [*FIXED]] if self._starts[sense] else [starts]
+        seeker, ways = self._seeker, [starts, [*FIXED]] if self._starts[sense] else [starts]
         height, highest = self.extreme(design, HIGHEST) if sense == LOWEST else (None, None)
         if highest is not None and height is not None:
             ways.append([highest.values])
         for way in ways:
-            found = _best_settled(solver, parameters, way, sense)
+            found = _best_settled(seeker, parameters, way, sense)
             if any(raw.status is Status.SOLVED for raw in found):
                 return found
-        return _best_settled(solver.by_ipopt, parameters, starts, sense) if solver.native else found
+        native = seeker.solver.native
+        return _best_settled(seeker.by_ipopt, parameters, starts, sense) if native else found
 
     def extreme(self, design: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
         """The extreme height in one sense (-1 highest, 1 lowest) and the solve that found it.
@@ -296,17 +302,17 @@ def _with_own_rows(setting: Setting) -> Setting:
 
 
 def _best_settled(
-    solver: Solver, parameters: Mapping[str, Any], starts: Sequence[Start], sense: float
+    seeker: Seeker, parameters: Mapping[str, Any], starts: Sequence[Start], sense: float
 ) -> list[RawSolution]:
     """The result of every start, of which the most extreme one violates nothing that was switched off."""
-    found = solver.solved_each(parameters, starts)
+    found = seeker.ends(parameters, starts)
     settled: set[int] = set()
     while True:
         solved = [place for place, raw in enumerate(found) if raw.status is Status.SOLVED]
         best = min(solved, key=lambda place: sense * _height(found[place]), default=None)
         if best is None or best in settled:
             return found
-        found[best] = solver.settled(parameters, found[best], WORTH)
+        found[best] = seeker.settled(parameters, found[best], WORTH)
         settled.add(best)
 
 

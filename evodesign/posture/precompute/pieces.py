@@ -18,7 +18,7 @@ from evodesign.collision.rules import BodyPair
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import Start
-from evodesign.nlp.solver import BRIEF, SolverCache
+from evodesign.nlp.solver import SolverCache
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
 from evodesign.posture.postures import PostureProblem
@@ -29,6 +29,7 @@ from evodesign.posture.precompute.plan import (
     Subject,
 )
 from evodesign.posture.precompute.precomputed import HeldLoads, PersonReach, Precomputed
+from evodesign.posture.seeking.budget import BUDGET
 from evodesign.posture.seeking.landscape import Design, spread_designs
 from evodesign.posture.seeking.start_portfolio import StartPortfolio
 from evodesign.posture.seeking.start_training import USUAL, start_portfolio
@@ -137,7 +138,7 @@ def _designs(setting: PrecomputeSetting, scene: Scene, solvers: SolverCache) -> 
 
 def _briefly(setting: PrecomputeSetting) -> SolverOptions:
     """With the limit of a solve beside others."""
-    return replace(setting.options, iterations=min(BRIEF, setting.options.iterations))
+    return replace(setting.options, iterations=min(BUDGET.brief, setting.options.iterations))
 
 
 def _portfolio(

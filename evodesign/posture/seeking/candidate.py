@@ -11,24 +11,9 @@ from evodesign.nlp.solver import RawSolution
 from evodesign.posture.check import TOLERANCE, sizes
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.results import Attempt, CaseSolution, Instant
+from evodesign.posture.seeking.budget import BUDGET
 from evodesign.posture.terms.base import Residual
 from evodesign.records import Case, Status, worst_status
-
-DISTINCT = 1e-5
-"""Share of its cost by which one optimum must exceed another not to be the same."""
-
-MAY_GAIN = 0.15
-"""By how much of the best one's cost others may cost more and are looked at for ways to cost less."""
-
-FAR = 1.5
-"""How many times the cheapest end of all the best posture may cost before all other ends are settled, too.
-
-Rows that are switched on may lead far away from what a start promised, and others less far.
-"""
-
-PROMISING = 0.93, 0.995
-"""Shares of the best one's cost between which solves that were given up must cost to go on: what costs
-much less is far from holding the constraints."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,12 +125,12 @@ def cheapest(formulation: str, ends: Sequence[tuple[str, RawSolution]], finishin
     given_up = {place for place, raw in enumerate(raws) if go_on and raw.status is Status.ITERATION_LIMIT}
     for place in _each_once([raw.cost for raw in raws], (left - settled) | given_up):
         raw, found = raws[place], raws[place]
-        least, most = np.multiply(PROMISING, best.raw.cost)
+        least, most = np.multiply(BUDGET.promising, best.raw.cost)
         if go_on is not None and place in given_up and least < raw.cost < most:
             found = finishing.settle(go_on(raw), False)
-        elif best.raw.cost > FAR * bound:
+        elif best.raw.cost > BUDGET.far * bound:
             found = finishing.settle(raw, False)
-        elif DISTINCT * best.raw.cost < raw.cost - best.raw.cost <= MAY_GAIN * best.raw.cost:
+        elif BUDGET.same * best.raw.cost < raw.cost - best.raw.cost <= BUDGET.may_gain * best.raw.cost:
             found = finishing.better(raw, raw.cost - best.raw.cost)
         if found.status is Status.SOLVED and found.cost < best.raw.cost:
             candidate = finishing.finish(starts[place], found)
@@ -158,7 +143,7 @@ def _each_once(costs: Sequence[float], places: Collection[int]) -> list[int]:
     """Those of some solves that are different optima, the cheapest first."""
     found: list[int] = []
     for place in sorted(places, key=lambda each: costs[each]):
-        if not found or costs[place] > costs[found[-1]] * (1.0 + DISTINCT):
+        if not found or costs[place] > costs[found[-1]] * (1.0 + BUDGET.same):
             found.append(place)
     return found
 

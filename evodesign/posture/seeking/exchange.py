@@ -16,14 +16,8 @@ from evodesign.nlp.program import Program
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.assemble import Slot
 from evodesign.posture.results import Array
+from evodesign.posture.seeking.budget import BUDGET
 from evodesign.posture.symmetry import Form
-
-PROMISE = 0.95
-"""Share of the least effort found that a pair must promise to be tried.
-
-Of 598 cases of the default problem 77 had such a pair; it was better by more than 0.2 % in 4 of them, and in
-none of the 58 others with a promise below 0.995.
-"""
 
 
 class Exchange:
@@ -60,5 +54,5 @@ class Exchange:
             efforts[party][:, load_case] += by_agent[party] * (squares @ counts)
         pairs = (efforts[ROBOT][:, None] + efforts[HUMAN][None, :]).max(axis=2)
         robot, person = np.unravel_index(int(np.argmin(pairs)), pairs.shape)
-        enough = pairs[robot, person] < PROMISE * np.diag(pairs).min()
+        enough = pairs[robot, person] < BUDGET.exchange * np.diag(pairs).min()
         return (int(robot), int(person)) if enough else None

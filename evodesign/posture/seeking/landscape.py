@@ -10,11 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.nlp.program import Start
-from evodesign.nlp.solver import RawSolution, Solver, has_any
+from evodesign.nlp.solver import RawSolution, has_any
+from evodesign.posture.seeking.seeker import Seeker
 from evodesign.records import Status
-
-NEAR = (0.01, 1e-4)
-"""How far above the best optimum of a posture another one is still good: 1 %; near zero 0.1 N m."""
 
 REFUSED = "the check refuses it"
 
@@ -86,7 +84,7 @@ class Landscape:
     """A cost to be minimised, whatever the design.
 
     Args:
-        solver: of a program with a parameter `design`.
+        seeker: of a program with a parameter `design`.
         beside: its other parameters, by name.
         starts: fixed ones, for any design.
         relative, absolute: how far above the best optimum another one is still good, as a share of its cost
@@ -97,7 +95,7 @@ class Landscape:
         known: parts of starts that are known beforehand; each drawn start has one of them.
     """
 
-    solver: Solver
+    seeker: Seeker
     beside: Mapping[str, Any]
     starts: tuple[Start, ...]
     relative: float
@@ -116,15 +114,15 @@ class Landscape:
         parameters = {"design": design, **self.beside}
         if self.begun is not None:
             start = self.begun(start, parameters)
-        return self.solver.solve(parameters, start)
+        return self.seeker.solver.solve(parameters, start)
 
     def settled(self, design: Design, end: RawSolution) -> RawSolution:
         """What it leads to with bodies parted somehow, whether that counts or not."""
-        return self.solver.settled({"design": design, **self.beside}, end, gain=np.inf)
+        return self.seeker.settled({"design": design, **self.beside}, end, gain=np.inf)
 
     def finished(self, design: Design, end: RawSolution) -> RawSolution:
         """The same with bodies parted in better ways; one that does not count has failed."""
-        found = self.solver.bettered({"design": design, **self.beside}, end, 0.0)
+        found = self.seeker.bettered({"design": design, **self.beside}, end, 0.0)
         if found.status is Status.SOLVED and self.accepted is not None and not self.accepted(design, found):
             return replace(found, status=Status.NUMERICAL_FAILURE, reason=REFUSED)
         return found
@@ -135,11 +133,12 @@ class Landscape:
 
     def needed(self, end: RawSolution) -> Start:
         """Its values without the rows on that do not hold it."""
-        return self.solver.needed(end)
+        return self.seeker.needed(end)
 
     def size(self, start: Start) -> float:
         """Variables and rows of the program that is solved from a start."""
-        switches, program = self.solver.program.switches, self.solver.program
+        program = self.seeker.program
+        switches = program.switches
         if switches is not None and has_any(switches.names, start):
             program = switches.program
         return float(program.symbols.numel() + program.rows.numel())
@@ -152,7 +151,7 @@ class Landscape:
     def free_start(self, rng: np.random.Generator) -> Start:
         """One of the fixed starts, with all that is drawn anywhere between its bounds."""
         start = dict(self.starts[int(rng.integers(len(self.starts)))])
-        for variable in self.solver.program.variables:
+        for variable in self.seeker.program.variables:
             if variable.drawn:
                 start[variable.name] = rng.uniform(variable.lower, variable.upper)
         return start

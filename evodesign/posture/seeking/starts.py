@@ -12,9 +12,7 @@ from evodesign.nlp.program import Program, Start, Variable
 from evodesign.nlp.solver import Solver
 from evodesign.posture.assemble import Slot
 from evodesign.posture.results import Array
-
-PEOPLE = 16
-"""People of other starts who are put beside the best robot found so far (docs/benchmarks.md)."""
+from evodesign.posture.seeking.budget import BUDGET
 
 SHARES: tuple[Mapping[str, float], ...] = ({ROBOT: 0.5, HUMAN: 0.5}, {ROBOT: 1.0, HUMAN: 0.5})
 """Fixed starts, as the share of the way from zero to the middle of each joint's range, by agent.
@@ -96,7 +94,7 @@ def different_people(program: Program, starts: Sequence[Start]) -> list[Start]:
     joints = [name for name, (slot, _) in own.items() if slot.part == "joints"]
     places = [np.concatenate([person[name] for name in joints]) for person in people]
     chosen = list(range(len(people)))[:1]
-    while len(chosen) < min(PEOPLE, len(people)):
+    while len(chosen) < min(BUDGET.people, len(people)):
         apart = [min(np.linalg.norm(place - places[index]) for index in chosen) for place in places]
         chosen.append(int(np.argmax(apart)))
     return [people[index] for index in chosen]

@@ -94,10 +94,12 @@ def test_rows_count_where_they_are_on_and_nowhere_else(seed: int) -> None:
 
 @pytest.mark.needs_compiler
 @pytest.mark.parametrize("on", [0.0, 1.0])
-def test_a_brief_solve_is_given_up_early(monkeypatch: pytest.MonkeyPatch, on: float) -> None:
-    monkeypatch.setattr("evodesign.nlp.solver.BRIEF", 3)
+def test_a_solve_is_given_up_at_its_limit(on: float) -> None:
     native, given, start = Solver(program(0), NATIVE), {"target": np.full(5, -1.0)}, {"on": np.full(ROWS, on)}
-    brief, whole = native.brief.solve(given, start), native.solve(given, start)
+    brief, whole = (
+        native.with_options(replace(NATIVE, iterations=3)).solve(given, start),
+        native.solve(given, start),
+    )
     assert (brief.status, brief.iterations) == (Status.ITERATION_LIMIT, 3)
     assert whole.status is Status.SOLVED
     assert whole.iterations > 3
@@ -106,7 +108,7 @@ def test_a_brief_solve_is_given_up_early(monkeypatch: pytest.MonkeyPatch, on: fl
 def test_solvers_with_other_options_share_the_program_with_all_rows() -> None:
     """It takes seconds to make."""
     solver = Solver(replace(program(0), switches=ByNumbers(program(0))), SolverOptions())
-    assert solver.brief.parted is solver.near.parted is solver.near.brief.parted is solver.parted
+    assert solver.near.parted is solver.with_options(SolverOptions(iterations=3)).near.parted is solver.parted
 
 
 def test_entries_are_at_their_places_among_those_of_the_program() -> None:

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from evodesign.nlp.solver import Multipliers, RawSolution
-from evodesign.posture.seeking.candidate import MAY_GAIN, Candidate, Finishing, Trial, cheapest, checked
+from evodesign.posture.seeking.budget import BUDGET
+from evodesign.posture.seeking.candidate import Candidate, Finishing, Trial, cheapest, checked
 from evodesign.records import Status
 
 NOTHING = np.zeros(0)
@@ -90,7 +91,10 @@ def test_later_runners_up_must_get_better_than_earlier_ones() -> None:
 
 def test_the_same_optimum_and_ones_that_cost_much_more_are_not_asked() -> None:
     asked = Asked({})
-    assert best_of(asked.trial(10.0, 10.0, 10.3, 10.3, 10.0 * (1.0 + MAY_GAIN) + 0.1)) == ("start 1", 10.0)
+    assert best_of(asked.trial(10.0, 10.0, 10.3, 10.3, 10.0 * (1.0 + BUDGET.may_gain) + 0.1)) == (
+        "start 1",
+        10.0,
+    )
     assert asked.asked == [(10.3, 0.3)]
 
 

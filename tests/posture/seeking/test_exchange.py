@@ -15,7 +15,8 @@ from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.posture.seeking.exchange import PROMISE, Exchange
+from evodesign.posture.seeking.budget import BUDGET
+from evodesign.posture.seeking.exchange import Exchange
 from evodesign.posture.seeking.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.warm_start import instants_of, layout_of
@@ -28,7 +29,7 @@ WEIGHTS = EffortWeights(0.4, 1.6)
 @pytest.fixture(scope="module")
 def program(problem: DesignProblem) -> Program:
     setting = Setting(problem.scene, problem.space, problem.weights, problem.options)
-    return PostureProblem(setting, Symmetry.ON).landscape(Hold(height_m=1.0)).solver.program
+    return PostureProblem(setting, Symmetry.ON).landscape(Hold(height_m=1.0)).seeker.program
 
 
 def drawn(program: Program, rng: np.random.Generator) -> dict[str, np.ndarray]:
@@ -58,7 +59,7 @@ def test_the_pair_of_least_effort_is_found(problem: DesignProblem, program: Prog
         best = min(efforts, key=lambda pair: efforts[pair])
         own = min(efforts[place, place] for place in range(4))
         found = exchange.best(postures, WEIGHTS)
-        assert found == (best if efforts[best] < PROMISE * own else None)
+        assert found == (best if efforts[best] < BUDGET.exchange * own else None)
         told.append(found)
     assert None in told
     assert len(set(told)) > 5

@@ -16,6 +16,7 @@ from evodesign.nlp.program import ConstraintBlock, Program, Start, Variable
 from evodesign.nlp.solver import RawSolution, Solver
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.seeking.landscape import Landscape, spread_designs
+from evodesign.posture.seeking.seeker import Seeker
 from evodesign.posture.seeking.start_portfolio import Coverage
 from evodesign.posture.seeking.start_training import Training, _cover, start_portfolio
 from evodesign.problem.build import DesignProblem
@@ -44,7 +45,7 @@ def landscape(limit: float = 3.0, least: float = -3.0) -> Landscape:
     bound = ConstraintBlock("bound", x, least, 9.0)
     program = Program("wells", (joints,), (bound,), cost, {"design": design})
     solver = Solver(program, SolverOptions())
-    return Landscape(solver, {}, FIXED, 0.01, 1e-6, universal=UNIVERSAL)
+    return Landscape(Seeker(solver), {}, FIXED, 0.01, 1e-6, universal=UNIVERSAL)
 
 
 def designs(count: int = 200) -> Iterator[tuple[float, ...]]:
@@ -76,10 +77,15 @@ def test_a_small_portfolio_tells_what_it_misses() -> None:
     assert found.coverage.share == found.coverage.good / found.coverage.designs
 
 
-class SolverOfOne:
+class SeekerOfOne:
     """All starts lead to the same optimum, in as many iterations as they say."""
 
-    program = landscape().solver.program
+    program = landscape().seeker.program
+
+    @property
+    def solver(self) -> SeekerOfOne:
+        """Who solves."""
+        return self
 
     def settled(self, parameters: dict, raw: SimpleNamespace, gain: float = 0.0) -> SimpleNamespace:
         """No rows are switched off."""
@@ -234,7 +240,7 @@ def test_ends_of_one_cost_are_settled_once() -> None:
             asked.setdefault(design, []).append(end.cost)
             return Landscape.settled(self, design, end)
 
-    counting = Counting(landscape().solver, {}, FIXED, 0.01, 1e-6, universal=UNIVERSAL)
+    counting = Counting(landscape().seeker, {}, FIXED, 0.01, 1e-6, universal=UNIVERSAL)
     found = start_portfolio(counting, designs(), TRAINING)
     plain = start_portfolio(landscape(), designs(), TRAINING)
     assert [well_of(start) for start in found.starts] == [well_of(start) for start in plain.starts]

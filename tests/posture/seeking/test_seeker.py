@@ -11,7 +11,9 @@ import pytest
 
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import Program, Variable
-from evodesign.nlp.solver import BRIEF, Solver
+from evodesign.nlp.solver import Solver
+from evodesign.posture.seeking.budget import BUDGET
+from evodesign.posture.seeking.seeker import Seeker
 from evodesign.records import Status
 
 NEEDED = {"quick": 10, "slow": 90, "hopeless": 999}
@@ -40,19 +42,19 @@ class Counted(Solver):
 
     def ends(self, *starts: Any) -> list[Status]:
         """Where starts lead to."""
-        return [raw.status for raw in self.solved_each({}, starts)]
+        return [raw.status for raw in Seeker(self).ends({}, starts)]
 
 
 def test_slow_ones_are_given_up_where_another_one_succeeds() -> None:
     solver = Counted()
     assert solver.ends("slow", "quick") == [Status.ITERATION_LIMIT, Status.SOLVED]
-    assert solver.asked == [("slow", BRIEF), ("quick", BRIEF)]
+    assert solver.asked == [("slow", BUDGET.brief), ("quick", BUDGET.brief)]
 
 
 def test_all_are_solved_to_their_ends_where_none_succeeds_but_those_that_have_ended() -> None:
     solver = Counted()
     assert solver.ends("slow", "hopeless") == [Status.SOLVED, Status.INFEASIBLE]
-    assert solver.asked == [("slow", BRIEF), ("hopeless", BRIEF), ("slow", 300)]
+    assert solver.asked == [("slow", BUDGET.brief), ("hopeless", BUDGET.brief), ("slow", 300)]
 
 
 def test_the_only_one_is_solved_to_its_end() -> None:
@@ -69,7 +71,7 @@ def test_a_solve_that_was_given_up_goes_on_where_it_ended() -> None:
     start = {"place": [-1.9, 2.0]}
     given_up = Solver(program, SolverOptions(iterations=5)).solve({}, start)
     assert given_up.status is Status.ITERATION_LIMIT
-    found = Solver(program, SolverOptions()).continued({}, given_up)
+    found = Seeker(Solver(program, SolverOptions())).continued({}, given_up)
     assert found.status is Status.SOLVED
     assert found.values["place"] == pytest.approx([1.0, 1.0], abs=1e-4)
     assert found.start == start
