@@ -30,6 +30,7 @@ from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair
 from evodesign.errors import ModelError
 from evodesign.tree.frames import link_frames, link_poses
 from evodesign.tree.model import Joint, JointKind, Tree
+from evodesign.tree.remembered import once_per_tree
 from evodesign.tree.symmetry import mirror_of
 
 HAND = 0.15
@@ -84,6 +85,11 @@ def exempt_pairs(tree: Tree, joints: Collection[str]) -> Mapping[BodyPair, str]:
         tree: of the agent, unscaled.
         joints: that move.
     """
+    return _exempt_pairs(tree, tuple(joints))
+
+
+@once_per_tree
+def _exempt_pairs(tree: Tree, joints: tuple[str, ...]) -> Mapping[BodyPair, str]:
     pairs = _link_pairs(tree)
     others = [pair for pair in pairs if not _is_joined(tree, pair)]
     touching, shares = _touching(tree, others), shares_of_postures(tree, joints, others)

@@ -35,17 +35,17 @@ class Triangles:
         geometry: coal's.
         corners: of each triangle, shape (n, 3, 3) [m].
         low, high: the least and the largest coordinates of all.
+        ends: the corners that have these, shape (6, 3) [m].
     """
 
     geometry: Any
     corners: Array
     low: Array
     high: Array
+    ends: Array
 
     def is_around(self, point: Array) -> bool:
         """Whether a point in the link's frame [m] is inside."""
-        if np.any(point < self.low) or np.any(point > self.high):
-            return False
         a, b, c = np.moveaxis(self.corners - point, 1, 0)
         u, v, w = (np.linalg.norm(each, axis=1) for each in (a, b, c))
         above = np.einsum("ij,ij->i", a, np.cross(b, c))
@@ -79,12 +79,15 @@ class PlacedBody:
         return coal.Transform3s(self.rotation, self.position)
 
     def is_around(self, other: PlacedBody) -> bool:
-        """Whether another body's first corner, or its centre, is inside of this mesh."""
-        if self.triangles is None:
+        """Whether another body is inside, whose surface does not cross this one's: all of it, or nothing."""
+        mesh = self.triangles
+        if mesh is None:
             return False  # simple shapes are solid for coal
-        local = other.triangles.corners[0, 0] if other.triangles else np.zeros(3)
-        point = other.rotation @ local + other.position
-        return self.triangles.is_around(self.rotation.T @ (point - self.position))
+        local = other.triangles.ends if other.triangles else np.zeros((1, 3))
+        points = (local @ other.rotation.T + other.position - self.position) @ self.rotation
+        if np.any(points < mesh.low) or np.any(points > mesh.high):
+            return False
+        return mesh.is_around(points[0])
 
 
 @functools.lru_cache(maxsize=512)
@@ -97,7 +100,9 @@ def triangles_in_link(mesh: Mesh) -> Triangles:
     geometry.addTriangles(faces)
     geometry.endModel()
     corners = vertices[faces]
-    return Triangles(geometry, corners, corners.min(axis=(0, 1)), corners.max(axis=(0, 1)))
+    points = corners.reshape(-1, 3)
+    ends = points[[*points.argmin(axis=0), *points.argmax(axis=0)]]
+    return Triangles(geometry, corners, points.min(axis=0), points.max(axis=0), ends)
 
 
 def are_in_each_other(one: PlacedBody, other: PlacedBody) -> bool:

@@ -8,37 +8,27 @@ zero in every symmetric posture.
 
 from __future__ import annotations
 
-import weakref
-
 from evodesign.errors import ModelError
 from evodesign.tree.mirror_candidates import Unpaired
 from evodesign.tree.mirror_images import EXACT, Figure
 from evodesign.tree.mirror_pairs import Mirror, mirror_pairs
 from evodesign.tree.model import Tree
+from evodesign.tree.remembered import once_per_tree
 
 OF_A_LINK = frozenset({Figure.MASS, Figure.CENTER, Figure.INERTIA})
 
 
-_FOUND: dict[int, tuple[weakref.ref[Tree], Mirror]] = {}
-"""Mirrors of the trees that are in use, by identity: a problem asks for that of its robot ten times."""
-
-
+@once_per_tree
 def mirror_of(tree: Tree) -> Mirror:
     """The mirror symmetry of a tree of numbers that is exact but for rounding.
 
     Raises:
         ModelError: naming a link that has no mirror partner, with the one that comes nearest.
     """
-    known = _FOUND.get(id(tree))
-    if known is not None and known[0]() is tree:
-        return known[1]
     try:
-        mirror = mirror_pairs(tree, EXACT).mirror
+        return mirror_pairs(tree, EXACT).mirror
     except Unpaired as unpaired:
         raise _refusal(tree, unpaired) from None
-    key = id(tree)
-    _FOUND[key] = (weakref.ref(tree, lambda _: _FOUND.pop(key, None)), mirror)
-    return mirror
 
 
 def _refusal(tree: Tree, unpaired: Unpaired) -> ModelError:
