@@ -90,31 +90,46 @@ def _of_mesh(mesh: Mesh, surface: Surface) -> ConvexSolid:
     centre = (high + low) / 2.0
     radius = float(np.linalg.norm(points - centre, axis=1).max())
     half = (high - low) / 2.0
-    return ConvexSolid(_hull(points), np.eye(3), np.zeros(3), centre, radius, centre, half, mesh)
+    hull = _hull(points, _hull_faces(surface))
+    return ConvexSolid(hull, np.eye(3), np.zeros(3), centre, radius, centre, half, mesh)
 
 
 @functools.lru_cache(maxsize=1024)
 def hull_corners(surface: Surface) -> Array:
     """The corners of a surface's convex hull, which scaling and stretching keep."""
+    hull = _convex_hull(vertices := np.array(surface.vertices, float))
+    # without a hull it is in a plane, or on a line
+    return np.unique(vertices, axis=0) if hull is None else np.asarray(vertices[np.sort(hull.vertices)])
+
+
+@functools.lru_cache(maxsize=1024)
+def _hull_faces(surface: Surface) -> Any:
+    """Coal's triangles of these corners, which stretching keeps, too; None where they have no volume."""
+    hull = _convex_hull(hull_corners(surface))
+    return None if hull is None else _triangles(hull)
+
+
+def _convex_hull(points: Array) -> Any:
+    """SciPy's; None of points in a plane or on a line."""
     from scipy.spatial import ConvexHull, QhullError  # takes a fifth of a second to load
 
-    vertices = np.array(surface.vertices, float)
     try:
-        return np.asarray(vertices[np.sort(ConvexHull(vertices).vertices)])
-    except QhullError:  # in a plane, or on a line
-        return np.unique(vertices, axis=0)
-
-
-def _hull(points: Array) -> Any:
-    """A convex hull; points in a plane or on a line are thickened by a tenth of a millimetre."""
-    from scipy.spatial import ConvexHull, QhullError
-
-    try:
-        hull = ConvexHull(points)
+        return ConvexHull(points)
     except QhullError:
+        return None
+
+
+def _hull(points: Array, faces: Any) -> Any:
+    """A convex hull; points without faces are thickened by a tenth of a millimetre."""
+    if faces is None:
         points = np.concatenate([points + sign * THIN * axis for sign in (-1.0, 1.0) for axis in np.eye(3)])
-        hull = ConvexHull(points)
-    corners, faces = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
+        faces = _triangles(_convex_hull(points))
+    corners = coal.StdVec_Vec3s()
     corners.extend(list(points))
-    faces.extend([coal.Triangle(*map(int, face)) for face in hull.simplices])
     return coal.Convex(corners, faces)
+
+
+def _triangles(hull: Any) -> Any:
+    faces = coal.StdVec_Triangle()
+    faces.extend([coal.Triangle(*map(int, face)) for face in hull.simplices])
+    return faces
