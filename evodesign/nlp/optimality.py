@@ -17,6 +17,7 @@ Source: Nocedal and Wright, Numerical Optimization, ch. 16 (null-space method) a
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -43,11 +44,6 @@ FLAT = 1e-11
 
 SADDLE = 1e-5
 """Negative curvature that counts: less stems from costs of little weight, and the system stays regular."""
-
-
-MOST_ELIMINATED = 100
-"""Symbols of a program whose common subexpressions are worth the time to find: a larger one takes a second
-longer to make, and has a quarter less to do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,40 +97,75 @@ class Change:
 class Conditions:
     """A program's functions and their derivatives.
 
-    They run on CasADi's virtual machine: as machine code they took as long, and seconds to compile.
+    They run on CasADi's virtual machine: as machine code they took as long, and seconds to compile. Rows that
+    can be switched off have functions of their own, made when they are first on: most never are.
 
     Args:
         program: whose they are.
     """
 
     def __init__(self, program: Program) -> None:
-        symbolic, self._patterns = _function(program)
-        self._ends = np.cumsum([len(pattern.places) for pattern in self._patterns]).tolist()
-        self._function = BufferedFunction(symbolic)
-
-    def _parts(self, symbols: Array, multipliers: Array, parameters: Array) -> list[Array]:
-        """What the function gives, in numbers."""
-        together = self._function(symbols, multipliers, parameters)[0]
-        begins = [0, *self._ends]
-        return [
-            pattern.filled(together[begin:end])
-            for begin, end, pattern in zip(begins, self._ends, self._patterns, strict=False)
-        ]
+        self._program = program
+        rows, self._places = ca.SX(program.rows), dict[int, int]()
+        if program.switches is not None and program.switched:
+            self._places = dict(program.switches.rows_of(program))
+            for row in self._places:
+                rows[row] = program.switches.off
+        self._multipliers = ca.SX.sym("multipliers", rows.numel())
+        self._always = self._function(program.cost, rows, self._multipliers)
+        self._switched: dict[int, _Evaluated] = {}
 
     def at(self, point: PrimalDual, parameters: Array) -> Derivatives:
         """Everything at a point."""
-        found = self._parts(point.symbols, point.multipliers, parameters)
-        cost, cost_slope, rows, row_slope, jacobian, gradient, gradient_slope, hessian = found
+        arguments = point.symbols, point.multipliers, parameters
+        found = self._always(*arguments)
+        for row in (row for row, place in self._places.items() if parameters[place] != 0.0):
+            if row not in self._switched:
+                cost = ca.SX(0.0)
+                own, multiplier = self._program.rows[row], self._multipliers[row]
+                self._switched[row] = self._function(cost, own, multiplier)
+            for name, part in self._switched[row](*arguments).items():
+                if name in OF_ROWS:
+                    found[name][row] = part[0]
+                else:
+                    found[name] += part
         return Derivatives(
-            cost=float(cost[0, 0]),
-            cost_slope=cost_slope.ravel(),
-            rows=rows.ravel(),
-            row_slope=row_slope,
-            jacobian=jacobian,
-            gradient=gradient.ravel(),
-            gradient_slope=gradient_slope,
-            hessian=hessian,
+            cost=float(found["cost"][0, 0]),
+            cost_slope=found["cost_slope"].ravel(),
+            rows=found["rows"].ravel(),
+            row_slope=found["row_slope"],
+            jacobian=found["jacobian"],
+            gradient=found["gradient"].ravel(),
+            gradient_slope=found["gradient_slope"],
+            hessian=found["hessian"],
         )
+
+    def _function(self, cost: Any, rows: Any, multipliers: Any) -> _Evaluated:
+        """The parts of `Derivatives` of a cost and some rows with their multipliers."""
+        x, p = self._program.symbols, self._program.given
+        lagrangian = cost + ca.dot(multipliers, rows)
+        hessian, gradient = ca.hessian(lagrangian, x)
+        parts = {
+            "cost": cost,
+            "cost_slope": ca.gradient(lagrangian, p),
+            "rows": rows,
+            "row_slope": ca.jacobian(rows, p),
+            "jacobian": ca.jacobian(rows, x),
+            "gradient": gradient,
+            "gradient_slope": ca.jacobian(gradient, p),
+            "hessian": hessian,
+        }
+        together = ca.vertcat(*[ca.vertcat(*part.nonzeros()) for part in parts.values()])
+        function = ca.Function("sensitivity", [x, self._multipliers, p], [together])
+        patterns = {
+            name: _Pattern(part.shape, np.array(part.sparsity().find(), np.intp))
+            for name, part in parts.items()
+        }
+        return _Evaluated(BufferedFunction(function), patterns)
+
+
+OF_ROWS = ("rows", "row_slope", "jacobian")
+"""Parts of `Derivatives` that have an entry or a row for each constraint's row; others are sums over them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -151,29 +182,25 @@ class _Pattern:
         return found.reshape(self.shape, order="F")
 
 
-def _function(program: Program) -> tuple[Any, list[_Pattern]]:
-    """A CasADi function of symbols, multipliers and parameters, and where what it gives belongs.
+@dataclass(frozen=True, slots=True, eq=False)
+class _Evaluated:
+    """A function of symbols, multipliers and parameters that gives entries of matrices in one column.
 
-    It gives the entries of the parts of `Derivatives`, one after another in one column.
+    Args:
+        function: gives them, one matrix after another.
+        patterns: of the matrices, by name.
     """
-    x, p, rows = program.symbols, program.given, program.rows
-    multipliers = ca.SX.sym("multipliers", rows.numel())
-    lagrangian = program.cost + ca.dot(multipliers, rows)
-    hessian, gradient = ca.hessian(lagrangian, x)
-    parts = [
-        program.cost,
-        ca.gradient(lagrangian, p),
-        rows,
-        ca.jacobian(rows, p),
-        ca.jacobian(rows, x),
-        gradient,
-        ca.jacobian(gradient, p),
-        hessian,
-    ]
-    together = ca.vertcat(*[ca.vertcat(*part.nonzeros()) for part in parts])
-    small = x.numel() <= MOST_ELIMINATED
-    function = ca.Function("sensitivity", [x, multipliers, p], [together], {"cse": small})
-    return function, [_Pattern(part.shape, np.array(part.sparsity().find(), np.intp)) for part in parts]
+
+    function: BufferedFunction
+    patterns: Mapping[str, _Pattern]
+
+    def __call__(self, symbols: Array, multipliers: Array, parameters: Array) -> dict[str, Array]:
+        """The matrices, by name."""
+        together, begin, found = self.function(symbols, multipliers, parameters)[0], 0, dict[str, Array]()
+        for name, pattern in self.patterns.items():
+            end = begin + len(pattern.places)
+            found[name], begin = pattern.filled(together[begin:end]), end
+        return found
 
 
 def error(point: PrimalDual, here: Derivatives) -> float:

@@ -13,6 +13,7 @@ import pytest
 
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.native.switched import FunctionSymbols, switched_rows
+from evodesign.nlp.optimality import Conditions, PrimalDual
 from evodesign.nlp.program import ConstraintBlock, Program, Start, Variable
 from evodesign.nlp.solver import Solver
 from evodesign.records import Status
@@ -90,6 +91,44 @@ def test_rows_count_where_they_are_on_and_nowhere_else(seed: int) -> None:
         assert prices[~np.array(on)] == pytest.approx(0.0, abs=1e-5)
         held += int((prices < -1e-3).sum())
     assert held >= 2**ROWS / 2, "walls hold the solution"
+
+
+@pytest.mark.parametrize("on", [(), (1,), (0, 3), (0, 1, 2, 3)])
+def test_derivatives_are_those_of_the_program_with_the_rows_that_are_on_and_no_others(on: tuple) -> None:
+    whole, rng = program(2), np.random.default_rng(5)
+    alone = program(2, [number in on for number in range(ROWS)])
+    x, target, forces = rng.normal(size=5), rng.normal(size=5), rng.normal(size=1 + ROWS)
+    kept = [0, *(1 + number for number in on)]
+    given = np.concatenate([target, [float(number in on) for number in range(ROWS)]])
+    none = np.zeros(0)
+    found = Conditions(whole).at(PrimalDual(x, forces, none, none, none), given)
+    multipliers = ca.SX.sym("multipliers", len(kept))
+    lagrangian = alone.cost + ca.dot(multipliers, alone.rows)
+    hessian, gradient = ca.hessian(lagrangian, alone.symbols)
+    numbers = ca.Function(
+        "alone",
+        [alone.symbols, multipliers, alone.given],
+        [
+            alone.cost,
+            alone.rows,
+            ca.jacobian(alone.rows, alone.symbols),
+            gradient,
+            hessian,
+            ca.jacobian(gradient, alone.given),
+            ca.gradient(lagrangian, alone.given),
+        ],
+    )(x, forces[kept], target)
+    cost, rows, jacobian, slope, curvature, cross, by_given = (np.array(each) for each in numbers)
+    assert found.cost == pytest.approx(cost.item(), abs=1e-12)
+    assert found.rows[kept] == pytest.approx(rows.ravel(), abs=1e-12)
+    assert found.jacobian[kept] == pytest.approx(jacobian, abs=1e-12)
+    assert found.gradient == pytest.approx(slope.ravel(), abs=1e-12)
+    assert found.hessian == pytest.approx(curvature, abs=1e-12)
+    assert found.gradient_slope[:, :5] == pytest.approx(cross, abs=1e-12)
+    assert found.cost_slope[:5] == pytest.approx(by_given.ravel(), abs=1e-12)
+    off = [row for row in range(1 + ROWS) if row not in kept]
+    assert found.rows[off].tolist() == [OFF] * len(off)
+    assert not found.jacobian[off].any()
 
 
 @pytest.mark.needs_compiler
