@@ -82,8 +82,11 @@ class Parted:
 
     @cached_property
     def program(self) -> Program:
-        """With all rows."""
-        return self._program()
+        """With all rows; to its own switches it is that, too."""
+        program = self._program()
+        if isinstance(program.switches, Parted):
+            program.switches._program = lambda: program
+        return program
 
     @property
     def off(self) -> float:
@@ -157,11 +160,12 @@ class Parted:
 
     @cached_property
     def _meetings(self) -> Meetings:
-        """Of the program with all rows."""
+        """Of the program with all rows, whose own switches have them."""
         program = self.program
         switches = program.switches
-        bodies = switches._bodies if isinstance(switches, Parted) else ()
-        return meetings_of(bodies, program.constraints, [program.symbols, program.given])
+        if isinstance(switches, Parted) and switches is not self:
+            return switches._meetings
+        return meetings_of(self._bodies, program.constraints, [program.symbols, program.given])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
