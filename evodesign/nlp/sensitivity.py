@@ -206,6 +206,17 @@ class SolutionSensitivity:
         """The same with all rows."""
         return SolutionSensitivity(self._solver.parted)
 
+    def at_solution(
+        self, parameters: Mapping[str, Any], raw: RawSolution, *, exact: bool = True
+    ) -> Optimum | NotDifferentiable:
+        """The same at a solution with multipliers: with these, or solved again where they are too inaccurate.
+
+        With its own rows on the solution stays what it is: along other directions bodies that touch would
+        part farther, and the posture would be another one.
+        """
+        found = self.of(parameters, raw, exact=exact)
+        return found if isinstance(found, Optimum) else self.at(parameters, raw.values, exact=exact)
+
     def of(
         self, parameters: Mapping[str, Any], raw: RawSolution, *, exact: bool = True
     ) -> Optimum | NotDifferentiable:

@@ -251,8 +251,11 @@ class JointPostures:
         """How a posture that this program found moves with the design."""
         program = self._sensitivity.program
         parameters = {"design": design, **self._beside(solution.case.task)}
-        start = self._begun(start_from(program, self._forms, solution.instants), parameters)
-        found = self._sensitivity.at(parameters, start, exact=exact)
+        if solution.raw is None:
+            start = self._begun(start_from(program, self._forms, solution.instants), parameters)
+            found = self._sensitivity.at(parameters, start, exact=exact)
+        else:
+            found = self._sensitivity.at_solution(parameters, solution.raw, exact=exact)
         if isinstance(found, NotDifferentiable):
             return found
         own = found.along("design")

@@ -268,7 +268,7 @@ class ReachProblem:
         if self._at_end(heights[start], self._beside(sense)[LEAST]):
             return ReachDerivative(heights[start], np.zeros(len(design)), start, len(solves), None, ())
         parameters = {"design": design, **self._beside(sense)}
-        found = self._sensitivity.at(parameters, solves[start].values, exact=exact)
+        found = self._sensitivity.at_solution(parameters, solves[start], exact=exact)
         if isinstance(found, NotDifferentiable):
             return found
         own = found.along("design")
