@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 from pathlib import Path
 
 from docs.write_floors import PICTURE, floors, picture
@@ -18,3 +19,14 @@ def test_the_readme_lists_every_package_in_the_order_of_its_floor(repository: Pa
 
 def test_the_picture_of_the_floors_is_that_of_the_contract() -> None:
     assert PICTURE.read_text(encoding="utf-8") == picture()
+
+
+def test_neighbouring_floors_have_no_modules_of_one_name(repository: Path) -> None:
+    """But for the command line, whose modules have the names of commands."""
+    modules = [
+        {path.name for name in floor for path in (repository / "evodesign" / name).rglob("*.py")}
+        for floor in floors()
+        if "cli" not in floor
+    ]
+    shared = [upper & lower - {"__init__.py"} for upper, lower in pairwise(modules)]
+    assert [names for names in shared if names] == []
