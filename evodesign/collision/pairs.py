@@ -30,7 +30,7 @@ from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair
 from evodesign.errors import ModelError
 from evodesign.tree.frames import link_frames, link_poses
 from evodesign.tree.model import Joint, JointKind, Tree
-from evodesign.tree.remembered import once_per_tree
+from evodesign.tree.once_per_tree import once_per_tree
 from evodesign.tree.symmetry import mirror_of
 
 HAND = 0.15

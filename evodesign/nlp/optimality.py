@@ -113,7 +113,7 @@ class Conditions:
                 rows[row] = program.switches.off
         self._multipliers = ca.SX.sym("multipliers", rows.numel())
         self._always = self._function(program.cost, rows, self._multipliers)
-        self._switched: dict[int, _Evaluated] = {}
+        self._switched: dict[int, _PartsFunction] = {}
 
     def at(self, point: PrimalDual, parameters: Array) -> Derivatives:
         """Everything at a point."""
@@ -140,7 +140,7 @@ class Conditions:
             hessian=found["hessian"],
         )
 
-    def _function(self, cost: Any, rows: Any, multipliers: Any) -> _Evaluated:
+    def _function(self, cost: Any, rows: Any, multipliers: Any) -> _PartsFunction:
         """The parts of `Derivatives` of a cost and some rows with their multipliers."""
         x, p = self._program.symbols, self._program.given
         lagrangian = cost + ca.dot(multipliers, rows)
@@ -161,7 +161,7 @@ class Conditions:
             name: _Pattern(part.shape, np.array(part.sparsity().find(), np.intp))
             for name, part in parts.items()
         }
-        return _Evaluated(BufferedFunction(function), patterns)
+        return _PartsFunction(BufferedFunction(function), patterns)
 
 
 OF_ROWS = ("rows", "row_slope", "jacobian")
@@ -183,7 +183,7 @@ class _Pattern:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Evaluated:
+class _PartsFunction:
     """A function of symbols, multipliers and parameters that gives entries of matrices in one column.
 
     Args:

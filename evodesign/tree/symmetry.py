@@ -13,7 +13,7 @@ from evodesign.tree.mirror_candidates import Unpaired
 from evodesign.tree.mirror_images import EXACT, Figure
 from evodesign.tree.mirror_pairs import Mirror, mirror_pairs
 from evodesign.tree.model import Tree
-from evodesign.tree.remembered import once_per_tree
+from evodesign.tree.once_per_tree import once_per_tree
 
 OF_A_LINK = frozenset({Figure.MASS, Figure.CENTER, Figure.INERTIA})
 
