@@ -11,7 +11,7 @@ from evodesign.problem.build import DesignProblem
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.source import decode_toml
 from evodesign.tree.model import Link
-from evodesign.tree.urdf_read import InertiaRule, read_urdf
+from evodesign.tree.urdf_read import InertiaRule, links_by_rule
 
 MOVED, CHANGED = 1e-3, 0.05
 """Distance of the centres of mass [m] and relative difference of a principal moment that are worth a line."""
@@ -38,10 +38,8 @@ def rule_differences(problem: DesignProblem) -> tuple[RuleDifference, ...]:
     """The links of the robot whose mass is the same, but elsewhere or otherwise spread, by the other rule."""
     tables = decode_toml(problem.source.text, problem.source.path, ProblemFile)
     name = tables.robot.urdf
-    by_shapes, by_file = (
-        read_urdf(problem.source.files[name], name, rule).links
-        for rule in (InertiaRule.SHAPES, InertiaRule.FILE)
-    )
+    rules = InertiaRule.SHAPES, InertiaRule.FILE
+    by_shapes, by_file = links_by_rule(problem.source.files[name], name, rules)
     taken = problem.scene.robot.tree.link_by_name
     found = (_difference(*pair, taken[pair[0].name]) for pair in zip(by_shapes, by_file, strict=True))
     return tuple(each for each in found if each is not None)

@@ -22,7 +22,7 @@ Source: wiki.ros.org/urdf/XML (link, joint); Traversaro et al. 2016, Section III
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -96,6 +96,12 @@ def read_urdf(text: str, source: str, rule: InertiaRule) -> Tree:
             key = f"joint {joint.name}"
             raise ModelError(source, key, f"chains of at most {LONGEST_CHAIN} joints", "a longer one")
     return tree
+
+
+def links_by_rule(text: str, source: str, rules: Sequence[InertiaRule]) -> list[tuple[Link, ...]]:
+    """The links of a URDF in file order, by each of several rules; otherwise as in `read_urdf`."""
+    elements = checked_urdf(text, source, []).findall("link")
+    return [tuple(_link(element, rule) for element in elements) for rule in rules]
 
 
 @dataclass(frozen=True, slots=True)

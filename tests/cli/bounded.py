@@ -1,4 +1,4 @@
-"""Commands in processes that may use 300 MB beyond what they import, and eight times its processor time.
+"""Commands in processes that may use 300 MB beyond what they import, and six times its processor time.
 
 Importing takes 1.3 s on an idle machine, and about as much longer as everything else on a slow or busy one.
 What grows faster than its input takes many times as long.
@@ -13,7 +13,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-IMPORTS, BYTES = 8, 300_000_000
+IMPORTS, BYTES = 6, 300_000_000
 
 
 def evodesign_bounded(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
