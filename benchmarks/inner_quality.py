@@ -27,10 +27,11 @@ from benchmarks.inner_problem import DEFAULT, HERE, Design, known_at, problem_na
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
 from evodesign.posture.formulations.base import Setting
-from evodesign.posture.formulations.reach import HIGHEST, LOWEST, NEAR_HEIGHT, ReachProblem
+from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.meetings import with_meetings
 from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.posture.seeking.budget import BUDGET
 from evodesign.posture.seeking.landscape import Landscape
 from evodesign.problem.build import DesignProblem
 from evodesign.quantities.design_result import DesignResult
@@ -184,8 +185,8 @@ def reach_summary(ends: list[Ends]) -> dict[str, float]:
     down, up = np.array([each.short for each in ends]).T
     return {
         "designs": len(ends),
-        "lowest_within_5_mm_share": float(np.mean(down <= NEAR_HEIGHT)),
-        "highest_within_5_mm_share": float(np.mean(up <= NEAR_HEIGHT)),
+        "lowest_within_5_mm_share": float(np.mean(down <= BUDGET.near_height)),
+        "highest_within_5_mm_share": float(np.mean(up <= BUDGET.near_height)),
         "worst_lowest_short_m": max(0.0, float(down.max())),
         "worst_highest_short_m": max(0.0, float(up.max())),
     }

@@ -34,6 +34,7 @@ from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_han
 from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.parting import parted
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, PersonReach, Precomputed
+from evodesign.posture.seeking.budget import BUDGET
 from evodesign.posture.seeking.landscape import Landscape
 from evodesign.posture.seeking.seeker import Seeker
 from evodesign.posture.seeking.starts import person_starts, universal_starts
@@ -62,15 +63,6 @@ FIXED_HEIGHTS = (1.0, 0.6)
 
 FIXED: tuple[Start, ...] = tuple({HEIGHT: [height]} for height in FIXED_HEIGHTS)
 """Starts where there is no portfolio; the best result counts."""
-
-WORTH = 1e-3
-"""How much farther [m] another way to keep bodies apart must let the load go to be tried."""
-
-NEAR_HEIGHT = 0.005
-"""How far [m] from the best known extreme another one is still good."""
-
-DISTINCT = 1e-6
-"""Difference of heights [m] above which two optima are not the same."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,7 +172,7 @@ class ReachProblem:
             self._beside(sense),
             FIXED,
             0.0,
-            NEAR_HEIGHT,
+            BUDGET.near_height,
             universal=universal,
         )
 
@@ -192,7 +184,8 @@ class ReachProblem:
         if highest is None or lowest is None:
             which, reason = ("highest", high.reason) if highest is None else ("lowest", low.reason)
             return Reach(lowest, highest, status, f"no {which} load height found: {reason}")
-        or_lower = lowest - self._setting.lowest_asked < DISTINCT and self._setting.lowest_asked > 0.0
+        asked = self._setting.lowest_asked
+        or_lower = lowest - asked < BUDGET.same_height and asked > 0.0
         reason = f"holds loads from {interval_text(lowest, highest, or_lower=or_lower)}"
         return Reach(lowest, highest, status, reason, or_lower)
 
@@ -281,7 +274,7 @@ class ReachProblem:
             slope=slope,
             start=start,
             starts=len(solves),
-            runner_up=min((much for much in short if much > DISTINCT), default=None),
+            runner_up=min((much for much in short if much > BUDGET.same_height), default=None),
             limits=own.limits,
         )
 
@@ -289,7 +282,7 @@ class ReachProblem:
         """Whether a height ends the range that is asked for, whatever the design: a load on the ground."""
         block = next(v for v in self.program.variables if v.name == HEIGHT)
         lower = max(block.lower[0], least)
-        return bool(min(height - lower, block.upper[0] - height) < DISTINCT)
+        return bool(min(height - lower, block.upper[0] - height) < BUDGET.same_height)
 
 
 def _with_own_rows(setting: Setting) -> Setting:
@@ -312,7 +305,7 @@ def _best_settled(
         best = min(solved, key=lambda place: sense * _height(found[place]), default=None)
         if best is None or best in settled:
             return found
-        found[best] = seeker.settled(parameters, found[best], WORTH)
+        found[best] = seeker.settled(parameters, found[best], BUDGET.part_farther)
         settled.add(best)
 
 

@@ -16,7 +16,6 @@ import numpy as np
 
 from evodesign.collision.rules import BodyPair
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
-from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import Start
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
@@ -116,7 +115,7 @@ def _with_found(known: Precomputed, piece: Piece, found: Mapping[str, Sequence[B
 def _designs(setting: PrecomputeSetting, scene: Scene, solvers: SolverCache) -> list[HeldLoads]:
     """Quasi-random designs that can be built and hold the load somewhere; enough of them at each height."""
     space, built = setting.space, can_be_built(scene.robot, setting.space)
-    own = setting.of(scene, _briefly(setting))
+    own = setting.of(scene, BUDGET.briefly(setting.options))
     reach = ReachProblem(own, symmetric=setting.symmetric, solvers=solvers)
     every = spread_designs(
         len(space.parameters),
@@ -136,16 +135,11 @@ def _designs(setting: PrecomputeSetting, scene: Scene, solvers: SolverCache) -> 
     return found
 
 
-def _briefly(setting: PrecomputeSetting) -> SolverOptions:
-    """With the limit of a solve beside others."""
-    return replace(setting.options, iterations=min(BUDGET.brief, setting.options.iterations))
-
-
 def _portfolio(
     setting: PrecomputeSetting, piece: Piece, known: Precomputed, solvers: SolverCache
 ) -> StartPortfolio:
     scene, task = scene_of(setting.scenes, piece.pair), piece.task
-    own, designs = setting.of(scene, _briefly(setting)), known.designs_for(task)
+    own, designs = setting.of(scene, BUDGET.briefly(setting.options)), known.designs_for(task)
     if task is None:
         sense = HIGHEST if piece.subject is Subject.HIGHEST else LOWEST
         reach = ReachProblem(own, symmetric=setting.symmetric, solvers=solvers)

@@ -5,7 +5,9 @@ What goes into portfolios of starts is `start_training.Training`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+from evodesign.nlp.method import SolverOptions
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +36,9 @@ class Budget:
             more than 0.2 % in 4 of them, and in none of the 58 others with a promise below 0.995.
         people: of other starts, who are put beside the best robot found so far (docs/benchmarks.md).
         near: how far above the best optimum of a posture another one is still good: 1 %; near zero 0.1 N m.
+        part_farther: how much farther [m] another way to part bodies must let the load go to be tried.
+        near_height: how far [m] from the best known extreme another one is still good.
+        same_height: difference of heights [m] above which two extremes are not the same.
     """
 
     rounds: int = 6
@@ -48,6 +53,13 @@ class Budget:
     exchange: float = 0.95
     people: int = 16
     near: tuple[float, float] = (0.01, 1e-4)
+    part_farther: float = 1e-3
+    near_height: float = 0.005
+    same_height: float = 1e-6
+
+    def briefly(self, options: SolverOptions) -> SolverOptions:
+        """Options of one of several solves."""
+        return replace(options, iterations=min(self.brief, options.iterations))
 
 
 BUDGET = Budget()

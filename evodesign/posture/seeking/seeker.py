@@ -34,8 +34,7 @@ class Seeker:
     @cached_property
     def brief(self) -> Solver:
         """The same for solves that are given up early."""
-        options = self.solver.options
-        return self.solver.with_options(replace(options, iterations=min(BUDGET.brief, options.iterations)))
+        return self.solver.with_options(BUDGET.briefly(self.solver.options))
 
     @cached_property
     def by_ipopt(self) -> Seeker:
@@ -114,7 +113,7 @@ class _Switched:
 
     def violated(self, solve: RawSolution) -> RawSolution | None:
         on = self.switches.violated(solve.values, self.parameters)
-        return self._after(solve, on, self.solver) if on else None
+        return self._further(self.solver, solve, on) if on else None
 
     def anew(self, first: RawSolution, found: RawSolution) -> RawSolution:
         on = self.switches.begun(first.start, self.parameters, found.values)
@@ -122,12 +121,12 @@ class _Switched:
 
     def better(self, solve: RawSolution, least: float) -> RawSolution | None:
         on = self.switches.better(solve.values, self.parameters, solve.multipliers.constraints, least)
-        return self._after(solve, on, self.solver.near) if on else None
+        return self._further(self.solver.near, solve, on) if on else None
 
     def unsettled(self, solve: RawSolution) -> RawSolution:
         return replace(solve, status=Status.NUMERICAL_FAILURE, reason=settling.UNSETTLED)
 
-    def _after(self, before: RawSolution, on: Start, solver: Solver) -> RawSolution:
+    def _further(self, solver: Solver, before: RawSolution, on: Start) -> RawSolution:
         """The solve that goes on with rows switched on."""
         return _after(before, solver.solve(self.parameters, {**before.values, **on}))
 
