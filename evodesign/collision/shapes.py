@@ -15,6 +15,7 @@ from typing import Any
 
 import coal
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from evodesign.body.placement import Placement
@@ -111,11 +112,9 @@ def _hull_faces(surface: Surface) -> Any:
 
 def _convex_hull(points: Array) -> Any:
     """SciPy's; None of points in a plane or on a line."""
-    from scipy.spatial import ConvexHull, QhullError  # takes a fifth of a second to load
-
     try:
-        return ConvexHull(points)
-    except QhullError:
+        return scipy.spatial.ConvexHull(points)
+    except scipy.spatial.QhullError:
         return None
 
 

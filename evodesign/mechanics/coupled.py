@@ -22,7 +22,7 @@ from enum import StrEnum
 from types import MappingProxyType
 
 import numpy as np
-from scipy.linalg import block_diag
+import scipy
 
 from evodesign.mechanics.floating_base import ROOT, Array, BodyState, Configuration, FloatingBody
 from evodesign.mechanics.scene import SIDES, Agent, Grasp, Scene
@@ -127,9 +127,9 @@ class CoupledModel:
             for (agent, kind, side), (_, drift), end in zip(self._places(), rows, ends.tolist(), strict=True)
         )
         return CoupledSystem(
-            mass=block_diag(*[state.mass for state in states.values()]),
+            mass=scipy.linalg.block_diag(*[state.mass for state in states.values()]),
             bias=np.concatenate([state.bias for state in states.values()]),
-            selector=block_diag(*[_selector(body) for body in self._bodies.values()]),
+            selector=scipy.linalg.block_diag(*[_selector(body) for body in self._bodies.values()]),
             coupling=np.vstack([jacobian for jacobian, _ in rows]),
             drift=np.concatenate([drift for _, drift in rows]),
             joints=tuple((agent.name, joint) for agent in self._agents for joint in agent.joints),

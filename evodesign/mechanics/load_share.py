@@ -10,6 +10,7 @@ grows with the moment that a hand may transmit.
 from __future__ import annotations
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from evodesign.mechanics.balance import GRAVITY
@@ -23,8 +24,6 @@ FAR = 10.0
 
 def share_interval(scene: Scene) -> tuple[float, float]:
     """Least and largest share of the load's weight that the robot can carry [-]: one where they agree."""
-    from scipy.optimize import linprog  # takes half a second to load, and few problems need it
-
     payload = scene.payload
     weight = payload.mass * GRAVITY
     largest = 0.0 if payload.grasp is Grasp.POINT else payload.hand_moment
@@ -33,7 +32,7 @@ def share_interval(scene: Scene) -> tuple[float, float]:
     loaded = weight * np.array([0.0, 0.0, 1.0, *np.cross(payload.center_of_mass, [0.0, 0.0, 1.0])])
     carried, push = (_of_robot(hands, row) for row in (2, 0))
     outcomes = [
-        linprog(
+        scipy.optimize.linprog(
             sign * carried,
             A_ub=np.vstack([push, -push, carried, -carried]),
             b_ub=[scene.stance.push, scene.stance.push, FAR * weight, FAR * weight],

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline, make_interp_spline
 
 from evodesign.motion.spline import RestingSpline
 from evodesign.posture.check import AgentMotion, SceneMotion
@@ -83,7 +83,7 @@ class LiftCourse:
     ) -> dict[str, dict[str, Array]]:
         """Torques and wrenches of the forms, likewise, from those of a load case at the knots."""
         knots = self.lift.knot_times
-        through = partial(make_interp_spline, k=1) if self.abrupt else CubicSpline
+        through = partial(scipy.interpolate.make_interp_spline, k=1 if self.abrupt else 3)
         return {
             name: {part: through(knots, at)(times) for part, at in parts.items()}
             for name, parts in carried.items()

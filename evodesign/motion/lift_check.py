@@ -18,8 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
+import scipy
 from numpy.typing import NDArray
-from scipy.integrate import simpson
 
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import SIDES, Grasp, Scene
@@ -112,7 +112,7 @@ class LiftChecker:
             )
             for model in self._models
         }
-        work = {name: float(simpson(power, x=times)) for name, power in powers.items()}
+        work = {name: float(scipy.integrate.simpson(power, x=times)) for name, power in powers.items()}
         begin, end = (self._energy(instants[place], motions[place], course) for place in (0, -1))
         energy = end - begin
         return CheckedLift(

@@ -9,9 +9,8 @@ from typing import Any
 
 import msgspec
 import numpy as np
-import scipy.sparse as sparse
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from evodesign.motion.course import LiftCourse
 from evodesign.motion.instant import KnotBlocks
@@ -110,24 +109,26 @@ class LiftProgram:
     def _program(self) -> RepeatedProgram:
         return RepeatedProgram("lift", self._parts, self._options)
 
-    def _stacked(self, splines: Sequence[tuple[Array, str]], *, carried: bool) -> sparse.csc_matrix:
+    def _stacked(self, splines: Sequence[tuple[Array, str]], *, carried: bool) -> scipy.sparse.csc_matrix:
         """What blocks see: splines, torques and wrenches, places; one repetition after the other."""
         rows = []
         for number in range(len(splines[0][0])):
             for image, kind in splines:
                 width = self._postures if kind == "postures" else 1
-                rows.append(self._at(kind, sparse.kron(image[number : number + 1], sparse.eye(width))))
+                rows.append(
+                    self._at(kind, scipy.sparse.kron(image[number : number + 1], scipy.sparse.eye(width)))
+                )
             if carried:
-                rows.append(self._at("others", sparse.eye(self._others), number * self._others))
-            rows.append(self._at("places", sparse.eye(self._places)))
-            rows.append(self._at("time", sparse.eye(self._times)))
-        return sparse.vstack(rows).tocsc()
+                rows.append(self._at("others", scipy.sparse.eye(self._others), number * self._others))
+            rows.append(self._at("places", scipy.sparse.eye(self._places)))
+            rows.append(self._at("time", scipy.sparse.eye(self._times)))
+        return scipy.sparse.vstack(rows).tocsc()
 
-    def _at(self, kind: str, image: sparse.spmatrix, further: int = 0) -> sparse.spmatrix:
+    def _at(self, kind: str, image: scipy.sparse.spmatrix, further: int = 0) -> scipy.sparse.spmatrix:
         """An image of some variables as one of all."""
-        found = sparse.coo_matrix(image)
+        found = scipy.sparse.coo_matrix(image)
         columns = found.col + self._first[kind] + further
-        return sparse.coo_matrix((found.data, (found.row, columns)), (found.shape[0], self._size))
+        return scipy.sparse.coo_matrix((found.data, (found.row, columns)), (found.shape[0], self._size))
 
     @property
     def method(self) -> MethodName:
@@ -321,7 +322,7 @@ class LiftProgram:
         moving = self._sampled(course.postures(times), seen.moving)[:, free]
         begin, knots = course.lift.knots * (self._postures + 1), course.lift.knots
         carried = start.symbols[begin : begin + knots * self._others].reshape(knots, -1)
-        others = CubicSpline(course.lift.knot_times, carried)(times)
+        others = scipy.interpolate.CubicSpline(course.lift.knot_times, carried)(times)
         spline = RestingSpline(self._knots)
         symbols = [
             spline.through(moving).ravel(),

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from evodesign.design.spread import spread_designs
 from evodesign.mechanics.scene import HUMAN, ROBOT, scene_of
 from evodesign.motion.lift_program import LiftProgram
 from evodesign.motion.lifting import MOVED, lift_program, lift_starts, moved_posture
@@ -29,7 +30,6 @@ from evodesign.posture.precompute.plan import PrecomputeSetting
 from evodesign.posture.precompute.precomputed import NO_STARTS, Precomputed
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.seeking.budget import BUDGET
-from evodesign.posture.seeking.landscape import spread_designs
 from evodesign.posture.seeking.start_portfolio import StartPortfolio
 from evodesign.posture.seeking.start_training import Training, start_portfolio
 from evodesign.records import Hold, Lift, Status

@@ -15,8 +15,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline
 
 Array = NDArray[np.float64]
 DEGREE = 3
@@ -43,7 +43,7 @@ class RestingSpline:
         """
         count = self.knots + 2
         ticks = np.arange(-DEGREE, count + 1.0)
-        basis = BSpline(ticks, np.eye(count), DEGREE)
+        basis = scipy.interpolate.BSpline(ticks, np.eye(count), DEGREE)
         inside = np.clip(places, 0.0, np.nextafter(self.knots - 1.0, 0.0))
         return np.asarray(basis(inside, derivative) @ self._mirrored)
 

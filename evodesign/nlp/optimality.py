@@ -23,8 +23,8 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dtrtrs
 
 from evodesign.nlp.buffered import BufferedFunction
 from evodesign.nlp.program import Program
@@ -255,5 +255,5 @@ def _solved(triangle: Array, right: Array, *, transposed: bool = False) -> Array
     """R^-1 b, or R^-T b, of an upper triangle R."""
     if not len(triangle):
         return right
-    solution, _ = dtrtrs(triangle, right, trans=int(transposed))
+    solution, _ = scipy.linalg.lapack.dtrtrs(triangle, right, trans=int(transposed))
     return np.asarray(solution)

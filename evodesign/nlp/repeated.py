@@ -10,7 +10,7 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-import scipy.sparse as sparse
+import scipy
 
 from evodesign.nlp.blocks import Block, Repeated, stacked_limits
 from evodesign.nlp.codegen import compiled_function
@@ -121,8 +121,8 @@ class RepeatedProgram:
         functions, symbols = self._uncompiled.functions, ending.symbols
         values, jacobian = functions["jac_g"](symbols, parameters)
         triangle = functions["hess_lag"](symbols, parameters, 1.0, ending.rows)
-        upper = sparse.csc_matrix(triangle.sparse())
-        hessian = upper + sparse.triu(upper, 1).T
+        upper = scipy.sparse.csc_matrix(triangle.sparse())
+        hessian = upper + scipy.sparse.triu(upper, 1).T
 
         def first(moved: Array) -> tuple[Array, Array]:
             by_x, _ = self._slopes(symbols, moved, own, ending.rows)
@@ -131,7 +131,7 @@ class RepeatedProgram:
 
         return solution_slopes(
             hessian,
-            sparse.csr_matrix(jacobian.sparse()),
+            scipy.sparse.csr_matrix(jacobian.sparse()),
             (np.asarray(values).ravel(), *self._limits, ending.rows),
             (symbols, *bounds, ending.bounds),
             central_differences(first, shared, count),

@@ -21,8 +21,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import scipy.sparse as sparse
-from scipy.sparse.linalg import splu
+import scipy
 
 from evodesign.nlp.optimality import COMPLEMENTARY, NotDifferentiable
 from evodesign.nlp.program import Array
@@ -45,8 +44,8 @@ REFINEMENTS = 3
 
 
 def solution_slopes(
-    hessian: sparse.spmatrix,
-    jacobian: sparse.spmatrix,
+    hessian: scipy.sparse.spmatrix,
+    jacobian: scipy.sparse.spmatrix,
     rows: tuple[Array, Array, Array, Array],
     bounds: tuple[Array, Array, Array, Array],
     slopes: tuple[Array, Array],
@@ -68,14 +67,14 @@ def solution_slopes(
         )
     free = np.flatnonzero(bounds[1] < bounds[2])
     firm = equal | (np.abs(forces) > distances)
-    own = sparse.csc_matrix(jacobian)[:, free].tocsr()
-    loose = sparse.diags(np.where(firm, 0.0, SHARPER * np.abs(forces) / distances)) @ own
-    on_bounds = sparse.diags(_on_bounds(*(each[free] for each in bounds)))
-    primal = sparse.csc_matrix(hessian)[free][:, free] + own.T @ loose + on_bounds
+    own = scipy.sparse.csc_matrix(jacobian)[:, free].tocsr()
+    loose = scipy.sparse.diags(np.where(firm, 0.0, SHARPER * np.abs(forces) / distances)) @ own
+    on_bounds = scipy.sparse.diags(_on_bounds(*(each[free] for each in bounds)))
+    primal = scipy.sparse.csc_matrix(hessian)[free][:, free] + own.T @ loose + on_bounds
     held = own[np.flatnonzero(firm)]
     softness = np.where(equal, 0.0, SHARPER * distances / np.maximum(np.abs(forces), LEAST_DISTANCE))[firm]
     right = -np.vstack([slopes[0][free] + loose.T @ slopes[1], slopes[1][firm]])
-    system = sparse.bmat([[primal, held.T], [held, -sparse.diags(softness)]], format="csc")
+    system = scipy.sparse.bmat([[primal, held.T], [held, -scipy.sparse.diags(softness)]], format="csc")
     moved = _solved(system, right, len(free))
     if isinstance(moved, NotDifferentiable):
         return moved
@@ -84,11 +83,11 @@ def solution_slopes(
     return found
 
 
-def _solved(system: sparse.csc_matrix, right: Array, count: int) -> Array | NotDifferentiable:
+def _solved(system: scipy.sparse.csc_matrix, right: Array, count: int) -> Array | NotDifferentiable:
     """The system's solution, refined; so many of its rows are variables, the others held rows."""
-    shift = sparse.diags(np.repeat([0.0, -DUAL_SHIFT], [count, len(right) - count]))
+    shift = scipy.sparse.diags(np.repeat([0.0, -DUAL_SHIFT], [count, len(right) - count]))
     try:
-        factors = splu(sparse.csc_matrix(system + shift))
+        factors = scipy.sparse.linalg.splu(scipy.sparse.csc_matrix(system + shift))
     except RuntimeError:
         return NotDifferentiable("the motion can move at no cost")
     found = factors.solve(right)

@@ -11,9 +11,9 @@ from evodesign.collision.margins import fitted_margins, narrow_margins
 from evodesign.collision.pairs import built_in_pairs, checked_pairs, exempt_pairs, feet_pairs
 from evodesign.collision.rules import LOAD, PLANES, BodyPair, CollisionRules
 from evodesign.design.space import DesignSpace
+from evodesign.design.spread import spread_designs
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.scene import ROBOT, Agent, Scene
-from evodesign.posture.seeking.landscape import spread_designs
 from evodesign.problem.file import CollisionsTable, ProblemFile
 from evodesign.records import ProblemSource
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-import scipy.sparse as sparse
+import scipy
 from numpy.typing import NDArray
 
 from evodesign.identity import code_digest
@@ -159,7 +159,7 @@ class NativeBlocks:
         held: NDArray[np.bool_],
         method: ctypes.CDLL,
     ) -> None:
-        images = [sparse.csr_matrix(part.image) for part in parts]
+        images = [scipy.sparse.csr_matrix(part.image) for part in parts]
         self._free, self._held = np.flatnonzero(~held), np.flatnonzero(held)
         self._fixed = [image[:, self._held] for image in images]
         self._constants = [np.zeros(image.shape[0]) for image in images]

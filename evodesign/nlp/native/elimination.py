@@ -19,6 +19,7 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 Integers = NDArray[np.int32]
@@ -152,8 +153,6 @@ def determined(jacobian: Any, equalities: NDArray[np.bool_]) -> dict[int, int]:
         jacobian: of the rows, an expression (SX).
         equalities: which rows are equalities.
     """
-    from scipy.optimize import linear_sum_assignment  # takes half a second to load
-
     entries, (count, variables) = Entries.of(jacobian), jacobian.shape
     values = [jacobian.nz[k] for k in range(jacobian.nnz())]
     sizes = [min(abs(float(v)), MOST_SIZE) if v.is_constant() else UNKNOWN_SIZE for v in values]
@@ -163,7 +162,7 @@ def determined(jacobian: Any, equalities: NDArray[np.bool_]) -> dict[int, int]:
     equal = np.flatnonzero(equalities)
     return {
         int(variable): int(equal[place])
-        for place, variable in zip(*linear_sum_assignment(costs[equal]), strict=True)
+        for place, variable in zip(*scipy.optimize.linear_sum_assignment(costs[equal]), strict=True)
         if costs[equal[place], variable] < NOT_AN_ENTRY
     }
 

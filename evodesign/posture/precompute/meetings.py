@@ -13,6 +13,7 @@ from itertools import islice, product
 
 from evodesign.collision.clearance import BodyDistance
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair, CollisionRules
+from evodesign.design.spread import spread_designs
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.check import AgentModel, Checker, near_bodies
@@ -21,7 +22,6 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.joint import JointPostures
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.results import AgentPosture
-from evodesign.posture.seeking.landscape import spread_designs
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
 from evodesign.tasks import Task
 

@@ -15,6 +15,7 @@ import msgspec
 import numpy as np
 
 from evodesign.collision.rules import BodyPair
+from evodesign.design.spread import spread_designs
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
 from evodesign.nlp.program import Start
 from evodesign.nlp.solver import SolverCache
@@ -29,7 +30,7 @@ from evodesign.posture.precompute.plan import (
 )
 from evodesign.posture.precompute.precomputed import HeldLoads, PersonReach, Precomputed
 from evodesign.posture.seeking.budget import BUDGET
-from evodesign.posture.seeking.landscape import Design, spread_designs
+from evodesign.posture.seeking.landscape import Design
 from evodesign.posture.seeking.start_portfolio import StartPortfolio
 from evodesign.posture.seeking.start_training import USUAL, start_portfolio
 from evodesign.records import Case, Hold, Status

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Protocol, TypeVar
 
@@ -155,23 +155,6 @@ class Landscape:
             if variable.drawn:
                 start[variable.name] = rng.uniform(variable.lower, variable.upper)
         return start
-
-
-def spread_designs(
-    dimension: int, values: Callable[[tuple[float, ...]], Design], keep: Callable[[Design], bool], most: int
-) -> Iterator[Design]:
-    """Designs spread evenly over the unit cube: those that are to be kept among the first `most`.
-
-    Args:
-        dimension: of the cube.
-        values: the design at a point of the cube.
-        keep: which designs to give.
-        most: how many to look at.
-    """
-    from scipy.stats import qmc  # takes half a second to load, which workers need not wait for
-
-    points = qmc.Halton(dimension, scramble=True, rng=np.random.default_rng(0)).random(most)
-    return (design for design in (values(tuple(point)) for point in points.tolist()) if keep(design))
 
 
 def cost_of(end: StartResult) -> float:

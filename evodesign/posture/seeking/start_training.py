@@ -7,7 +7,7 @@ solver converges from it to within 1 % of the best optimum that any start led to
 start leads anywhere may begin elsewhere at last. Of the offers those are kept that serve all together with
 little work. The same landscape always gets the same portfolio.
 
-Source: greedy cover: Johnson 1974; Halton's points: scipy.stats.qmc.
+Source: greedy cover: Johnson 1974.
 """
 
 from __future__ import annotations

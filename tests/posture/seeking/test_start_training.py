@@ -10,12 +10,13 @@ import casadi as ca
 import numpy as np
 import pytest
 
+from evodesign.design.spread import spread_designs
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import ConstraintBlock, Program, Start, Variable
 from evodesign.nlp.solver import RawSolution, Solver
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.posture.seeking.landscape import Landscape, spread_designs
+from evodesign.posture.seeking.landscape import Landscape
 from evodesign.posture.seeking.seeker import Seeker
 from evodesign.posture.seeking.start_portfolio import Coverage
 from evodesign.posture.seeking.start_training import Training, _cover, start_portfolio
