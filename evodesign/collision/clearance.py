@@ -32,6 +32,11 @@ from evodesign.tree.model import Tree
 
 UP = np.array([0.0, 0.0, 1.0])
 
+WHETHER = coal.CollisionRequest()
+"""Asks whether solids are in each other, not where."""
+
+WHETHER.enable_contact = False
+
 ACCURACY = 0.002
 """Of meshes, which have few triangles [m]: overlaps that are not deeper are none."""
 
@@ -40,6 +45,9 @@ Indices = NDArray[np.intp]
 
 Places = NDArray[np.intp]
 """Pairs of solids by their places, shape (n, 2)."""
+
+PosturePair = tuple[int, str, str]
+"""A posture's place, and the names of two bodies."""
 
 
 def places_of(names: Sequence[str], pairs: Iterable[tuple[str, str]]) -> Places:
@@ -122,15 +130,15 @@ class SolidBodies:
         return tuple(places), np.array([places[name] for name in self.names], np.intp)
 
     def placed_at(self, turns: Array, origins: Array) -> PlacedSolids:
-        """The solids where their bodies' frames are.
+        """The solids where their bodies' frames are, once or in several postures.
 
         Args:
-            turns: rotations world_from_body, shape (n, 3, 3).
-            origins: in the world [m], shape (n, 3).
+            turns: rotations world_from_body, shape (n, 3, 3) or (postures, n, 3, 3).
+            origins: in the world [m], likewise.
         """
         rotations, points = self._local
-        placed = origins[:, None, :] + points @ turns.transpose(0, 2, 1)
-        return PlacedSolids(self, turns @ rotations, *placed.transpose(1, 0, 2))
+        placed = (origins[..., None, :] + points @ np.swapaxes(turns, -1, -2)).reshape(-1, 3, 3)
+        return PlacedSolids(self, (turns @ rotations).reshape(-1, 3, 3), *placed.transpose(1, 0, 2))
 
     @cached_property
     def radii(self) -> Array:
@@ -155,10 +163,10 @@ class SolidBodies:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlacedSolids:
-    """Solids in the world.
+    """Solids in the world, once or in several postures: n of each, one posture after the other.
 
     Args:
-        bodies: what they are.
+        bodies: what they are in a posture.
         rotations, positions: world_from_geometry of each, shapes (n, 3, 3) and (n, 3) [m].
         centres: of the balls about them, shape (n, 3) [m].
         middles: of the boxes about them, shape (n, 3) [m].
@@ -172,8 +180,23 @@ class PlacedSolids:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of each solid's body."""
+        """Of each solid's body, in a posture."""
         return self.bodies.names
+
+    def in_all(self, places: Places) -> Places:
+        """Pairs of solids of a posture in all postures."""
+        starts = np.arange(0, len(self.positions), max(len(self.names), 1))
+        return (starts[:, None, None] + places).reshape(-1, 2)
+
+    @property
+    def postures(self) -> int:
+        """How many."""
+        return len(self.positions) // len(self.names) if self.names else 0
+
+    def pair_of(self, i: int, j: int) -> PosturePair:
+        """The posture of a pair of solids, and their bodies."""
+        count = len(self.names)
+        return i // count, self.names[i % count], self.names[j % count]
 
     def named(self, name: Callable[[str], str]) -> PlacedSolids:
         """The same by other names."""
@@ -208,29 +231,41 @@ class PlacedSolids:
 
         Where overlaps are asked for, those of meshes by less than their accuracy are left out.
         """
-        near = places[self._balls_apart(places) < within]
-        near = near[self._boxes_apart(near) < within]
-        found: dict[tuple[str, str], BodyDistance] = {}
-        for gap in (self._gap(each, within) for each in near):
-            known = found.get((gap.first, gap.second))
-            if gap.distance < (within if known is None else known.distance):
-                found[gap.first, gap.second] = gap
-        return list(found.values())
+        return [
+            BodyDistance(first, second, gap) for (_, first, second), gap in self.gaps(places, within).items()
+        ]
 
-    def in_each_other(self, places: Places, least: float = ACCURACY) -> set[tuple[str, str]]:
+    def gaps(self, places: Places, within: float) -> dict[PosturePair, float]:
+        """How far the bodies of some pairs are apart that are nearer to each other than a distance [m]."""
+        found: dict[PosturePair, float] = {}
+        for i, j in self.near(places, within).tolist():
+            pair, distance = self.pair_of(i, j), self._distance(i, j, within)
+            if distance < found.get(pair, within):
+                found[pair] = distance
+        return found
+
+    def in_each_other(self, places: Places, least: float = ACCURACY) -> set[PosturePair]:
         """Those of some pairs whose bodies are in each other, not asked how deep, which takes longest.
 
         Args:
             places: of the pairs among the solids.
             least: overlaps of meshes that are not deeper [m] are left out.
+        Returns:
+            The posture of each such pair, and the names of its bodies.
         """
-        near = places[self._balls_apart(places) < 0.0]
-        found: set[tuple[str, str]] = set()
-        for i, j in near[self._boxes_apart(near) < 0.0].tolist():
-            pair = self.names[i], self.names[j]
-            if pair not in found and self._overlap(i, j, least):
-                found.add(pair)
-        return found
+        near, (bodies, of) = self.near(places, 0.0), self.bodies.links
+        postures, solids = np.divmod(near, len(of))
+        keys = np.column_stack([postures[:, 0], of[solids]]).tolist()
+        found: set[tuple[int, int, int]] = set()
+        for (posture, first, second), (i, j) in zip(keys, near.tolist(), strict=True):
+            if (posture, first, second) not in found and self._overlap(i, j, least):
+                found.add((posture, first, second))
+        return {(posture, bodies[first], bodies[second]) for posture, first, second in found}
+
+    def near(self, places: Places, within: float) -> Places:
+        """Those of some pairs that may be nearer to each other than a distance [m]: by balls and boxes."""
+        places = places[self._balls_apart(places) < within]
+        return places[self._boxes_apart(places) < within]
 
     def near_floor(self, floor: Indices, within: float = 0.0) -> list[BodyDistance]:
         """Those of some solids that are nearer to the floor z = 0 than a distance [m]."""
@@ -247,13 +282,13 @@ class PlacedSolids:
         """How far the balls about pairs of solids are apart [m]."""
         first, second = places.T
         between = self.centres[first] - self.centres[second]
-        distances = np.sqrt(np.einsum("ij,ij->i", between, between))
-        return np.asarray(distances - self.bodies.radii[first] - self.bodies.radii[second])
+        distances, count = np.sqrt(np.einsum("ij,ij->i", between, between)), len(self.names)
+        return np.asarray(distances - self.bodies.radii[first % count] - self.bodies.radii[second % count])
 
     def _boxes_apart(self, places: Places) -> Array:
         """How far the boxes about pairs of solids are apart at least [m]: along the normals of faces."""
         first, second = places.T
-        half, other_half = self.bodies.half_sides[first], self.bodies.half_sides[second]
+        half, other_half = (self.bodies.half_sides[place % len(self.names)] for place in places.T)
         one, other = self.rotations[first], self.rotations[second]
         between = self.middles[second] - self.middles[first]
         turned = np.abs(one.transpose(0, 2, 1) @ other)
@@ -265,12 +300,13 @@ class PlacedSolids:
 
     def _gap(self, places: Places, within: float = np.inf) -> BodyDistance:
         i, j = places.tolist()
-        return BodyDistance(self.names[i], self.names[j], self._distance(i, j, within))
+        _, first, second = self.pair_of(i, j)
+        return BodyDistance(first, second, self._distance(i, j, within))
 
     def _distance(self, i: int, j: int, within: float) -> float:
         """How far two solids are apart [m]; of meshes that are not in each other, no nearer than that."""
         distance, way, *_ = self.parted(i, j)
-        if distance >= 0.0 or not (self.bodies.solids[i].mesh or self.bodies.solids[j].mesh):
+        if distance >= 0.0 or not self._has_mesh(i, j):
             return distance
         one, other = self._body(i), self._body(j)
         if self._meshes_overlap(one, other, distance, way, ACCURACY if within <= 0.0 else 0.0):
@@ -279,9 +315,11 @@ class PlacedSolids:
 
     def _overlap(self, i: int, j: int, least: float) -> bool:
         """Whether two solids are in each other; meshes by more than `least` [m]."""
+        if not coal.collide(*self._geometry(i), *self._geometry(j), WHETHER, coal.CollisionResult()):
+            return False
+        if not self._has_mesh(i, j):
+            return True
         distance, way, *_ = self.parted(i, j)
-        if distance >= 0.0 or not (self.bodies.solids[i].mesh or self.bodies.solids[j].mesh):
-            return distance < 0.0
         return self._meshes_overlap(self._body(i), self._body(j), distance, way, least)
 
     @staticmethod
@@ -295,7 +333,7 @@ class PlacedSolids:
 
     def _body(self, place: int) -> PlacedBody:
         """A solid by its triangles, if it has any."""
-        solid = self.bodies.solids[place]
+        solid = self.solid(place)
         triangles = triangles_in_link(solid.mesh) if solid.mesh else None
         geometry = triangles.geometry if triangles else solid.geometry
         return PlacedBody(geometry, self.rotations[place], self.positions[place], triangles)
@@ -310,5 +348,11 @@ class PlacedSolids:
         return float(coal.distance(*one, *other, request, result)), np.array(result.normal), i, j
 
     def _geometry(self, place: int) -> tuple[Any, Any]:
-        where = coal.Transform3s(self.rotations[place], self.positions[place])
-        return self.bodies.solids[place].geometry, where
+        return self.solid(place).geometry, coal.Transform3s(self.rotations[place], self.positions[place])
+
+    def _has_mesh(self, i: int, j: int) -> bool:
+        return self.solid(i).mesh is not None or self.solid(j).mesh is not None
+
+    def solid(self, place: int) -> ConvexSolid:
+        """What stands at a place."""
+        return self.bodies.solids[place % len(self.names)]

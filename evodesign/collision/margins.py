@@ -13,6 +13,7 @@ which may be minus infinity: then rows would refuse more than they are good for,
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Mapping
 
 import coal
@@ -72,22 +73,26 @@ def fitted_margins(
     shown, known, images = SolidBodies.of_tree(tree), _fitted(tree), images_of(tree)
     if not own or not shown.names:
         return {}
-    places = places_of(shown.names, own), places_of(known.names, own)
-    found: dict[frozenset[str], list[tuple[float, bool]]] = {frozenset(pair): [] for pair in own}
-    postures = zip(*(placed_in_postures(tree, joints, bodies) for bodies in (shown, known)), strict=True)
-    samples = 0
-    for as_shown, as_known in postures:
-        overlaps = {*map(frozenset, as_shown.in_each_other(places[0], least=0.0))}
-        for gap in as_known.overlapping(places[1], margin):
-            both = frozenset((gap.first, gap.second))
-            found[both].append((gap.distance, both in overlaps))
-        samples += 1
+    both = {pair: (frozenset(pair), frozenset(images.get(link, link) for link in pair)) for pair in own}
+    postures = [*placed_in_postures(tree, joints, known)]
+    gaps = [placed.gaps(placed.in_all(places_of(known.names, own)), margin) for placed in postures]
+    enough = COARSE * 2 * sum(placed.postures for placed in postures)
+    counts = Counter(frozenset(pair) for found in gaps for _, *pair in found)
+    often = [pair for pair in own if sum(counts[names] for names in both[pair]) >= enough]
+    asked = {names for pair in often for names in both[pair]}
+    places = {pair: places_of(shown.names, [pair]) for pair in own if frozenset(pair) in asked}
+    drawn: dict[frozenset[str], list[tuple[float, bool]]] = {names: [] for names in asked}
+    for found, placed in zip(gaps, placed_in_postures(tree, joints, shown), strict=True):
+        near = [each for each in found if frozenset(each[1:]) in asked]
+        solids = [places[each[1:]] + each[0] * len(shown.names) for each in near]
+        overlaps = placed.in_each_other(np.concatenate(solids), least=0.0) if near else set()
+        for each in near:
+            drawn[frozenset(each[1:])].append((found[each], each in overlaps))
     margins: dict[BodyPair, float] = {}
-    for pair in own:
-        image = frozenset(images.get(link, link) for link in pair)
-        drawn = np.array([*found[frozenset(pair)], *found.get(image, [])], float).reshape(-1, 2)
-        if np.sum(drawn[:, 1] == 0.0) >= COARSE * 2 * samples:
-            margins[pair] = _least_wrong(drawn[:, 0], drawn[:, 1] == 1.0)
+    for pair in often:
+        distances, overlap = np.array([each for names in both[pair] for each in drawn[names]]).T
+        if np.sum(overlap == 0.0) >= enough:
+            margins[pair] = _least_wrong(distances, overlap == 1.0)
     return margins
 
 

@@ -19,7 +19,7 @@ Source: MoveIt's matrix of allowed collisions: adjacent, in touch by default, al
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import combinations
 
 import numpy as np
@@ -39,8 +39,8 @@ HAND = 0.15
 TOUCH = 1e-6
 """Solids nearer than this [m] are in touch: shapes that end where another one begins."""
 
-SAMPLES = 500
-"""Postures in which pairs are looked at."""
+SAMPLES, AT_ONCE = 500, 50
+"""Postures in which pairs are looked at, and of how many bodies are placed at once, for memory's sake."""
 
 MOST, SELDOM = 0.55, 0.1
 """Shares of the postures: more than half of them, whichever are drawn, and so few that a touch is chance."""
@@ -92,7 +92,11 @@ def exempt_pairs(tree: Tree, joints: Collection[str]) -> Mapping[BodyPair, str]:
 def _exempt_pairs(tree: Tree, joints: tuple[str, ...]) -> Mapping[BodyPair, str]:
     pairs = _link_pairs(tree)
     others = [pair for pair in pairs if not _is_joined(tree, pair)]
-    touching, shares = _touching(tree, others), shares_of_postures(tree, joints, others)
+    touching = _touching(tree, others)
+    shares = {
+        **shares_of_postures(tree, joints, [pair for pair in others if pair in touching], SELDOM),
+        **shares_of_postures(tree, joints, [pair for pair in others if pair not in touching], MOST),
+    }
     found: dict[BodyPair, str] = {}
     for pair in pairs:
         share = shares.get(pair, 0.0)
@@ -139,8 +143,7 @@ def built_in_pairs(
     for each in resized:
         hulls = SolidBodies.of_tree(each).hulls
         near = sorted(_touching(each, apart - found, hulls) | _touching(each, clear - found, hulls, margin))
-        shares = shares_of_postures(each, joints, near, bodies=hulls, images=images)
-        found |= {pair for pair, share in shares.items() if share >= SELDOM}
+        found |= shares_of_postures(each, joints, near, SELDOM, bodies=hulls, images=images).keys()
     found |= {(images.get(one, one), images.get(other, other)) for one, other in found}
     return tuple(pair for pair in own if pair in found or pair[::-1] in found)
 
@@ -251,17 +254,19 @@ def _touching(
 def shares_of_postures(
     tree: Tree,
     joints: Collection[str],
-    pairs: Collection[BodyPair],
+    pairs: Sequence[BodyPair],
+    least: float,
     *,
     bodies: SolidBodies | None = None,
     images: Mapping[str, str] | None = None,
 ) -> Mapping[BodyPair, float]:
-    """In what share of postures pairs are in each other, with their mirror images: those that ever are.
+    """In what share of postures pairs are in each other, with their mirror images.
 
     Args:
         tree: of the agent.
         joints: that move; their positions are drawn from their ranges, always the same ones.
         pairs: of links.
+        least: share of those that are given.
         bodies: the links' solids; left out, the tree's own.
         images: the mirror image of each link; left out, the tree's own.
     """
@@ -270,21 +275,20 @@ def shares_of_postures(
     bodies = SolidBodies.of_tree(tree) if bodies is None else bodies
     images = images_of(tree) if images is None else images
     counts: Counter[frozenset[str]] = Counter()
-    places, samples = places_of(bodies.names, pairs), 0
+    both = {pair: (frozenset(pair), frozenset(images.get(link, link) for link in pair)) for pair in pairs}
+    samples = 0
     for placed in placed_in_postures(tree, joints, bodies):
-        counts.update(map(frozenset, placed.in_each_other(places)))
-        samples += 1
-    found: dict[BodyPair, float] = {}
-    for pair in pairs:
-        image = frozenset(images.get(link, link) for link in pair)
-        both = counts[frozenset(pair)] + counts[image]
-        if both:
-            found[pair] = both / (2 * samples)
-    return found
+        in_each_other = placed.in_each_other(placed.in_all(places_of(bodies.names, pairs)))
+        counts.update(frozenset(pair) for _, *pair in in_each_other)
+        samples += placed.postures
+        wanted = 2 * (least * SAMPLES - (SAMPLES - samples))
+        pairs = [pair for pair in pairs if sum(counts[each] for each in both[pair]) >= wanted]
+    shares = {pair: sum(counts[each] for each in both[pair]) / (2 * samples) for pair in pairs}
+    return {pair: share for pair, share in shares.items() if share >= least}
 
 
 def placed_in_postures(tree: Tree, joints: Collection[str], bodies: SolidBodies) -> Iterator[PlacedSolids]:
-    """Solids in random postures, always the same ones.
+    """Solids in random postures, always the same ones, many at once.
 
     Args:
         tree: of the agent.
@@ -296,9 +300,9 @@ def placed_in_postures(tree: Tree, joints: Collection[str], bodies: SolidBodies)
     lower, upper = np.array([*ranges.values()]).reshape(-1, 2).T
     drawn = rng.uniform(lower, upper, (SAMPLES, len(ranges)))
     poses = link_poses(tree, dict(zip(ranges, drawn.T, strict=True)))
-    turns, origins = (np.array([poses[name][part] for name in bodies.names]) for part in (0, 1))
-    for sample in range(turns.shape[1]):  # one where nothing moves
-        yield bodies.placed_at(turns[:, sample], origins[:, sample])
+    turns, origins = (np.stack([poses[name][part] for name in bodies.names], axis=1) for part in (0, 1))
+    for first in range(0, len(turns), AT_ONCE):  # one where nothing moves
+        yield bodies.placed_at(turns[first : first + AT_ONCE], origins[first : first + AT_ONCE])
 
 
 def _range(joint: Joint) -> tuple[float, float]:

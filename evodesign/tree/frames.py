@@ -56,7 +56,7 @@ def link_poses(tree: Tree, positions: Mapping[str, Array]) -> dict[str, tuple[Ar
         if moved is not None and joint.kind is JointKind.PRISMATIC:
             origins = origins + moved[:, None] * (turns @ axis)
         elif moved is not None and joint.kind is not JointKind.FIXED:
-            turns = turns @ np.array([_turn(joint.axis, angle) for angle in moved.tolist()])
+            turns = turns @ _turns(joint.axis, moved)
         poses[joint.child] = turns, origins
     return poses
 
@@ -68,6 +68,13 @@ def parent_from_child(joint: Joint, position: float) -> Placement:
     if joint.kind is JointKind.PRISMATIC:
         return joint.parent_from_child @ Placement(translation=scale(position, joint.axis))
     return joint.parent_from_child @ Placement(rotation=_turn(joint.axis, position))
+
+
+def _turns(axis: Vector, angles: Array) -> Array:
+    """Rotations by angles about a unit vector, shape (n, 3, 3)."""
+    across = np.cross(np.eye(3), np.array(axis, float))
+    turns = np.sin(angles)[:, None, None] * across + (1.0 - np.cos(angles))[:, None, None] * (across @ across)
+    return np.asarray(np.eye(3) + turns)
 
 
 def _turn(axis: Vector, angle: float) -> Matrix:

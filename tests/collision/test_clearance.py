@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import combinations
 
 import mujoco
 import numpy as np
@@ -158,7 +159,29 @@ def test_the_nearest_of_many_is_found_and_the_overlapping_ones() -> None:
         assert nearest.distance == min(each.values()) == each[nearest.first, nearest.second]
         overlapping = {(gap.first, gap.second): gap.distance for gap in placed.overlapping(places)}
         assert overlapping == {p: found for p, found in each.items() if found < 0.0}
-        assert placed.in_each_other(places) == overlapping.keys()
+        assert placed.in_each_other(places) == {(0, *pair) for pair in overlapping}
+
+
+def test_many_postures_at_once_have_the_distances_of_each() -> None:
+    rng, count = np.random.default_rng(2), 9
+    names = [f"link {number}" for number in range(6)]
+    links = [body(name, SHAPES[number % 3]) for number, name in enumerate(names)]
+    joints = [Joint(n, JointKind.FIXED, names[0], n, Placement()) for n in names[1:]]
+    bodies = SolidBodies.of_tree(Tree("many", tuple(links), tuple(joints)))
+    frames = [[random_placement(rng) for _ in names] for _ in range(count)]
+    turns = np.array([[place.rotation for place in each] for each in frames], float)
+    origins = np.array([[place.translation for place in each] for each in frames], float)
+    together, pairs = bodies.placed_at(turns, origins), places_of(bodies.names, combinations(names, 2))
+    assert together.postures == count
+    alone = [bodies.placed(dict(zip(names, each, strict=True))) for each in frames]
+    gaps = {
+        (number, gap.first, gap.second): gap.distance
+        for number, placed in enumerate(alone)
+        for gap in placed.overlapping(pairs, 0.02)
+    }
+    assert together.gaps(together.in_all(pairs), 0.02) == gaps
+    assert together.in_each_other(together.in_all(pairs)) == {key for key, gap in gaps.items() if gap < 0.0}
+    assert len({number for number, *_ in gaps}) > count // 2
 
 
 def test_an_agent_without_any_shape_touches_nothing_and_leaves_the_others_what_they_are() -> None:

@@ -80,7 +80,7 @@ def test_an_overlap_of_meshes_within_their_accuracy_is_none() -> None:
         assert len(overlapping(one, one, Placement(translation=(0.1 - depth, 0.0, 0.0)))) == count
         both = placed(one, one, Placement(translation=(0.1 - depth, 0.0, 0.0)))
         assert len(both.in_each_other(PAIR)) == count
-        assert both.in_each_other(PAIR, least=0.0) == {("one", "other")}
+        assert both.in_each_other(PAIR, least=0.0) == {(0, "one", "other")}
         assert distance(one, one, Placement(translation=(0.1 - depth, 0.0, 0.0))) == pytest.approx(
             -depth, abs=3e-4
         )
