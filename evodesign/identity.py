@@ -50,13 +50,18 @@ SCALARS: Mapping[type, Callable[[Any], bytes]] = {
 }
 
 
-def digest(value: object, *, without: Exceptions = NO_EXCEPTIONS) -> str:
+Met = dict[int, tuple[object, bytes]]
+"""Records by identity, with their codes; held, so that no other takes an identity of theirs."""
+
+
+def digest(value: object, *, without: Exceptions = NO_EXCEPTIONS, met: Met | None = None) -> str:
     """Digest of data, as 64 hexadecimal digits.
 
     Args:
         value: frozen dataclasses and msgspec structs, enumerations, tuples, lists, mappings, sets, numpy
             arrays, text, bytes, numbers, booleans and None, in each other.
         without: fields that do not count, of exactly these classes.
+        met: what digests with the same `without` have met, which is not looked at again; is added to.
     Raises:
         TypeError: a value of another type; it says which and where.
         RecursionError: data that contain themselves.
@@ -65,14 +70,10 @@ def digest(value: object, *, without: Exceptions = NO_EXCEPTIONS) -> str:
     for kind, names in without.items():
         for name in set(names) - set(_field_names(kind) or ()):
             raise ValueError(f"{kind.__name__} has no field '{name}' that could be left out")
-    return hashlib.sha256(_code(value, without, type(value).__name__, {})).hexdigest()
+    return hashlib.sha256(_code(value, without, type(value).__name__, {} if met is None else met)).hexdigest()
 
 
-_Met = dict[int, tuple[object, bytes]]
-"""Records by identity, with their codes; held, so that no other takes an identity of theirs."""
-
-
-def _code(value: Any, without: Exceptions, path: str, met: _Met) -> bytes:
+def _code(value: Any, without: Exceptions, path: str, met: Met) -> bytes:
     kind: Any = type(value)
     if kind in SCALARS:
         return SCALARS[kind](value)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from evodesign.errors import InputError, RunError
@@ -13,7 +13,7 @@ from evodesign.nlp.compiler import optimiser
 from evodesign.nlp.disk_cache import Cache
 from evodesign.nlp.solver import own_solvers
 from evodesign.pool.base import Limits, Pool
-from evodesign.posture.precompute.keys import key_of
+from evodesign.posture.precompute.keys import keys_of
 from evodesign.posture.precompute.pieces import compute_piece, encoded_piece, with_piece
 from evodesign.posture.precompute.plan import (
     OF_STARTS,
@@ -80,10 +80,10 @@ def precomputed(
         InputError: a height at which one of the people cannot hold a load.
     """
     setting, staged = all_mean_people(precompute_setting(problem)), staged_pieces(problem, lifts)
-    known = Precomputed()
+    keys, known = keys_of(setting, (piece for stage in staged for piece in stage)), Precomputed()
 
     def content_of(piece: Piece) -> bytes | None:
-        return cache.read(key_of(setting, piece)) if cache else None
+        return cache.read(keys[piece]) if cache else None
 
     absent = [piece for stage in staged for piece in stage if content_of(piece) is None]
     if absent:
@@ -104,9 +104,9 @@ def precomputed(
             spoilt = [piece for piece in missing if piece not in absent]
             if spoilt:
                 watcher.missing(len(spoilt))
-            for piece, content in _worked_out(problem, setting, missing, known, pool, watcher).items():
+            for piece, content in _worked_out(problem, setting, keys, missing, known, pool, watcher).items():
                 if cache is not None:
-                    cache.store(key_of(setting, piece), content)
+                    cache.store(keys[piece], content)
                 found = with_piece(known, piece, content)
                 if found is None:
                     raise RunError(f"{piece}: what was worked out cannot be read back")
@@ -138,6 +138,7 @@ def refuse_heights(problem: DesignProblem, known: Precomputed) -> None:
 def _worked_out(
     problem: DesignProblem,
     setting: PrecomputeSetting,
+    keys: Mapping[Piece, str],
     missing: Sequence[Piece],
     known: Precomputed,
     pool: Pool,
@@ -145,7 +146,7 @@ def _worked_out(
 ) -> dict[Piece, bytes]:
     """Contents of the pieces, in the order in which they are missing."""
     contents: dict[Piece, bytes] = {}
-    name = " ".join(key_of(setting, piece) for piece in missing)
+    name = " ".join(keys[piece] for piece in missing)
     factory = _PieceFactory(name, setting, known, replace(problem.limits, seconds=SECONDS))
     for finished in pool.run(factory, missing):
         piece = missing[finished.index]

@@ -76,7 +76,7 @@ class RepeatedProgram:
         began, options = time.perf_counter(), options or self._options
         parameters = np.concatenate([shared, *[np.ravel(each) for each in own]])
         if self._native is not None:
-            symbols, found = self._native.for_bounds(bounds).solve(options, start, bounds, parameters)
+            symbols, found = self._native.solve(options, start, bounds, parameters)
             cost, word, iterations, rows = found.cost, found.word, found.iterations, found.rows
         else:
             result, stats = self._by_ipopt(options, start, bounds, parameters)

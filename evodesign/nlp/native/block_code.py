@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import ctypes
-import os
-from collections.abc import Mapping, Sequence
+import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 from typing import Any
@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 
 from evodesign.identity import code_digest
 from evodesign.nlp.blocks import Block, Repeated, stacked_limits
-from evodesign.nlp.codegen import FUNCTION_FLAGS, Library, built, compiler_and_cache
-from evodesign.nlp.compiler import NotCompiled
+from evodesign.nlp.codegen import Library
+from evodesign.nlp.compiler import Compiler, NotCompiled
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.native.calls import NOT_LOADED, CalledSolver, CSolution, method_library
 from evodesign.nlp.native.cut_functions import in_pieces
 from evodesign.nlp.native.elimination import elimination
 from evodesign.nlp.native.lanes import LANES_SYMBOL, in_lanes, in_one_lane, lane_flags
+from evodesign.nlp.native.optimised import Optimised, Source, functions_of
 from evodesign.nlp.native.program_code import UNBOUNDED
 from evodesign.nlp.native.scatter import Scatter, hessian_targets, jacobian_targets, scattered
 from evodesign.nlp.native.structures import BlockRecord, Memory
@@ -36,12 +37,14 @@ class BlockFunctions:
     """A block's machine code: `values` and `derivatives`, as the C wants them.
 
     Args:
-        library: that holds them.
+        file: of the library that holds them.
+        library: the same, loaded.
         lanes: how many repetitions they take at once.
         jacobian, hessian: rows and symbols of the entries that they give.
         work, integers: what they need.
     """
 
+    file: Library
     library: ctypes.CDLL
     lanes: int
     jacobian: tuple[Integers, Integers]
@@ -54,55 +57,71 @@ class BlockFunctions:
         return ctypes.cast(self.library[name], ctypes.c_void_p).value
 
 
-def block_functions(block: Block, *, seldom: bool = False) -> BlockFunctions | NotCompiled:
-    """A block's machine code, compiled or from the user's cache, or why there is none.
+def block_functions(
+    block: Block, *, seldom: bool = False
+) -> tuple[BlockFunctions, Optimised | None] | NotCompiled:
+    """A block's machine code and what optimises it, compiled or from the user's cache, or why there is none.
 
     Args:
         block: whose functions are wanted.
         seldom: whether they run so seldom that the compiler had better be quick than its code.
     """
-    tools = compiler_and_cache(os.environ, quick=seldom)
-    if isinstance(tools, NotCompiled):
-        return tools
     expressions = ca.Function("block", block.arguments, block.values).serialize()
-    lanes = lane_flags(tools[0])
-    flags = (*FUNCTION_FLAGS, *lanes)
-
-    def texts() -> Mapping[str, str]:
-        text = _c_text(block)
-        if lanes:
-            return {"functions.c": in_lanes(in_pieces(text))}
-        return {"functions.c": in_one_lane(text)}
-
+    source = Source((code_digest(__name__), expressions), lambda: _c_text(block), _file, lane_flags)
     try:
-        found = built((code_digest(__name__), expressions), texts, flags, *tools)
-        return found if isinstance(found, NotCompiled) else _loaded(found)
+        found = functions_of(source, seldom=seldom)
+        return found if isinstance(found, NotCompiled) else (_loaded(found[0]), found[1])
     except (OSError, RuntimeError) as error:  # such as a directory mounted without the right to execute
         return NotCompiled(f"{NOT_LOADED}: {error}")
 
 
+def _file(text: str, compiler: Compiler) -> str:
+    return in_lanes(in_pieces(text)) if lane_flags(compiler) else in_one_lane(text)
+
+
 class NativeMaker:
-    """Makes the method in C for a program, once for each choice of variables that have one value.
+    """The method in C for a program, made once for each choice of variables that have one value.
 
     Args:
         parts: blocks with what they see.
-        functions: of each block.
+        functions: of each block, with what optimises them.
         method: the method's own library.
     """
 
     def __init__(
-        self, parts: Sequence[Repeated], functions: Sequence[BlockFunctions], method: ctypes.CDLL
+        self,
+        parts: Sequence[Repeated],
+        functions: Sequence[tuple[BlockFunctions, Optimised | None]],
+        method: ctypes.CDLL,
     ) -> None:
-        self._parts, self._functions, self._method = parts, functions, method
+        self._parts, self._method = parts, method
+        self._functions, self._optimised = ([*each] for each in zip(*functions, strict=True))
         self._made: dict[bytes, NativeBlocks] = {}
 
-    def for_bounds(self, bounds: tuple[Array, Array]) -> NativeBlocks:
-        """For the variables that lower and upper bounds leave."""
-        held = np.asarray(bounds[0] == bounds[1])
+    def solve(
+        self, options: SolverOptions, start: Array, bounds: tuple[Array, Array], parameters: Array
+    ) -> tuple[Array, CSolution]:
+        """All variables of the last iterate, and what else the C found; arguments as in `NativeBlocks`."""
+        began, held = time.perf_counter(), np.asarray(bounds[0] == bounds[1])
         key = held.tobytes()
         if key not in self._made:
             self._made[key] = NativeBlocks(self._parts, self._functions, held, self._method)
-        return self._made[key]
+        found = self._made[key].solve(options, start, bounds, parameters)
+        self._optimise(time.perf_counter() - began)
+        return found
+
+    def _optimise(self, seconds: float) -> None:
+        """Take over what has been optimised behind, if a solve of so long [s] makes it worth that."""
+        for place, optimised in enumerate(self._optimised):
+            try:
+                found = optimised.after(self._functions[place].file, seconds) if optimised else None
+                if isinstance(found, Library):
+                    self._functions[place] = _loaded(found)
+                    self._made.clear()
+            except (OSError, RuntimeError) as error:
+                found = NotCompiled(f"{NOT_LOADED}: {error}")
+            if found:
+                self._optimised[place] = None
 
 
 def native_maker(parts: Sequence[Repeated], *, seldom: bool = False) -> NativeMaker | NotCompiled:
@@ -131,6 +150,7 @@ def _loaded(library: Library) -> BlockFunctions:
     jacobian, hessian = (made[1].sparsity_out(place).get_triplet() for place in (3, 4))
     loaded = ctypes.CDLL(str(library.path))
     return BlockFunctions(
+        file=library,
         library=loaded,
         lanes=ctypes.c_int.in_dll(loaded, LANES_SYMBOL).value,
         jacobian=(np.array(jacobian[0], int), np.array(jacobian[1], int)),

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
-from evodesign.identity import Exceptions, code_digest, digest
+from evodesign.identity import Exceptions, Met, code_digest, digest
 from evodesign.mechanics.scene import Agent, Payload, Scene, scene_of
 from evodesign.nlp.method import SolverOptions
 from evodesign.posture.precompute.plan import (
@@ -86,12 +86,18 @@ def no_part_of(setting: PrecomputeSetting, piece: Piece) -> Exceptions:
     return NO_PART_OF_PARTED if _parted(setting, piece) else NO_PART_OF[piece.subject]
 
 
-def key_of(setting: PrecomputeSetting, piece: Piece) -> str:
-    """The digest under which a piece is kept: of all that it may follow from, and of the code."""
+def keys_of(setting: PrecomputeSetting, pieces: Iterable[Piece]) -> dict[Piece, str]:
+    """The digest under which each piece is kept: of all that it may follow from, and of the code."""
+    met: dict[int, Met] = {}
+    return {piece: key_of(setting, piece, met) for piece in pieces}
+
+
+def key_of(setting: PrecomputeSetting, piece: Piece, met: dict[int, Met] | None = None) -> str:
+    """That of one piece; what was met for others, by what does not count in them, is not looked at again."""
     without = no_part_of(setting, piece)
     data = (setting, setting.symmetric, scene_of(setting.scenes, piece.pair), piece)
     code = code_digest(CODE_OF_LIFTS if piece.subject is Subject.LIFT else CODE)
-    return digest((data, code), without=without)
+    return digest((data, code), without=without, met=met if met is None else met.setdefault(id(without), {}))
 
 
 def _parted(setting: PrecomputeSetting, piece: Piece) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from evodesign.nlp.blocks import Block, Repeated
-from evodesign.nlp.codegen import FUNCTION_FLAGS
+from evodesign.nlp.codegen import FUNCTION_FLAGS, Library
 from evodesign.nlp.compiler import Compiler, find_compiler
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.native import block_code
@@ -78,19 +78,24 @@ def test_a_solve_in_lanes_has_the_bits_of_one_without(
 
     compiler = find_compiler(os.environ)
     assert isinstance(compiler, Compiler)
+    monkeypatch.setenv("CC", compiler.command[0])  # from the first solve
     wanted = LANES if lane_flags(compiler) else 1
-    counts: list[block_code.BlockFunctions] = []
-    made = block_code.block_functions
-    monkeypatch.setattr(
-        block_code, "block_functions", lambda *a, **k: counts.append(made(*a, **k)) or counts[-1]
-    )
+    counts: list[int] = []
+    loaded = block_code._loaded
+
+    def counted(library: Library) -> block_code.BlockFunctions:
+        functions = loaded(library)
+        counts.append(functions.lanes)
+        return functions
+
+    monkeypatch.setattr(block_code, "_loaded", counted)
     together = solved()
     monkeypatch.setattr(block_code, "lane_flags", lambda compiler: ())
     alone = solved()
     assert together.iterations == alone.iterations > 3
     assert together.symbols.tobytes() == alone.symbols.tobytes()
     assert together.rows.tobytes() == alone.rows.tobytes()
-    assert [each.lanes for each in counts] == [wanted, wanted, 1, 1]
+    assert counts == [wanted, wanted, 1, 1]
 
 
 def test_what_lanes_cannot_do_is_done_in_one() -> None:

