@@ -78,8 +78,8 @@ def compiled_functions(nlp: Mapping[str, Expression]) -> CompiledFunctions | Not
 
 
 def compiled_function(function: Any) -> Any:
-    """A CasADi function (SX) as machine code; itself where nothing can be compiled."""
-    tools = compiler_and_cache(os.environ)
+    """A CasADi function (SX) as machine code, made quickly; itself where nothing can be compiled."""
+    tools = compiler_and_cache(os.environ, quick=True)
     if isinstance(tools, NotCompiled):
         return function
     generator = ca.CodeGenerator("functions", {"verbose": False})

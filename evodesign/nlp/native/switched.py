@@ -57,6 +57,9 @@ def switched_rows(
 ) -> list[SwitchedRow]:
     """The rows that may be off: most are, and functions of their own are called for those that are on.
 
+    Common subexpressions are not looked for in them: that would take half of the time in which a program is
+    made ready, and save 3 % of their operations.
+
     Args:
         program: with all rows.
         rows: as they are compiled.
@@ -77,11 +80,11 @@ def switched_rows(
             ("hessian", [hessian.get_nz(*entry) for entry in entries]),
         )
         functions = (
-            ca.Function(f"row_{number}", [symbols.free, symbols.given], ca.cse([ca.densify(value)])),
+            ca.Function(f"row_{number}", [symbols.free, symbols.given], [ca.densify(value)]),
             ca.Function(
                 f"row_{number}_derivatives",
                 [symbols.free, symbols.given, symbols.multipliers],
-                ca.cse([ca.densify(value), slope, curvature]),
+                [ca.densify(value), slope, curvature],
             ),
         )
         found.append(SwitchedRow(row, parameter, functions, places))
