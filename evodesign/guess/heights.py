@@ -14,7 +14,6 @@ from __future__ import annotations
 import math
 import tomllib
 from dataclasses import dataclass, replace
-from typing import Any
 
 import tomli_w
 
@@ -39,8 +38,6 @@ STEP = 0.05
 
 SHOULDER = "LeftUpperArm"
 """Link of a generated person that begins at the shoulder."""
-
-QUICK: dict[str, Any] = {"start_portfolio": False, "compile": False}
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,13 +69,14 @@ def held_heights(text: str, urdf: str, tree: Tree) -> HeldHeights | None:
     """
     tables = tomllib.loads(text)
     tables["robot"]["meshes"] = False
-    tables["solver"] = QUICK
+    tables["solver"] = {"start_portfolio": False}
     tables.pop("collisions", None)
     source = ProblemSource(path=urdf, text=tomli_w.dumps(tables), files={urdf: urdf_text(tree)})
     try:
         problem = build_problem(source)
     except InputError:
         return None
+    problem = replace(problem, options=replace(problem.options, seldom=True))
     ends = _ends(problem)
     if not all(ends):
         return None
