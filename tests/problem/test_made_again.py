@@ -2,32 +2,30 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import msgspec
 import pytest
 
 from evodesign.evaluation.precompute import precompute_setting, staged_pieces
-from evodesign.posture.precompute.keys import key_of
+from evodesign.posture.precompute import keys
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source
-from evodesign.records import ProblemSource
+
+SOURCE = read_source(Path(__file__).parents[2] / "problems" / "icub_lifting.toml")
 
 
-@pytest.fixture(scope="module")
-def source(repository: Path) -> ProblemSource:
-    return read_source(repository / "problems" / "icub_lifting.toml")
-
-
-def keys_of(source: ProblemSource, *changes: tuple[str, str]) -> set[str]:
-    """Under which what is made ready of a problem lies in the cache."""
-    text = source.text
+@cache
+def keys_of(*changes: tuple[str, str]) -> set[str]:
+    """Under which what is made ready of the default problem, with changes, lies in the cache."""
+    text = SOURCE.text
     for old, new in changes:
         assert old in text
         text = text.replace(old, new)
-    problem = build_problem(msgspec.structs.replace(source, text=text))
-    setting = precompute_setting(problem)
-    return {key_of(setting, piece) for stage in staged_pieces(problem) for piece in stage}
+    problem = build_problem(msgspec.structs.replace(SOURCE, text=text))
+    pieces = [piece for stage in staged_pieces(problem) for piece in stage]
+    return {*keys.keys_of(precompute_setting(problem), pieces).values()}
 
 
 @pytest.mark.parametrize(
@@ -40,8 +38,8 @@ def keys_of(source: ProblemSource, *changes: tuple[str, str]) -> set[str]:
         ("mass_kg = { lower = 25.0, upper = 65.0 }", "mass_kg = { upper = 60.0 }"),
     ],
 )
-def test_nothing_is_made_again(source: ProblemSource, old: str, new: str) -> None:
-    assert keys_of(source, (old, new)) <= keys_of(source)
+def test_nothing_is_made_again(old: str, new: str) -> None:
+    assert keys_of((old, new)) <= keys_of()
 
 
 EVERYTHING = [
@@ -54,16 +52,14 @@ EVERYTHING = [
 
 
 @pytest.mark.parametrize(("old", "new"), EVERYTHING)
-def test_everything_is_made_again_where_bodies_are_kept_apart(
-    source: ProblemSource, old: str, new: str
-) -> None:
+def test_everything_is_made_again_where_bodies_are_kept_apart(old: str, new: str) -> None:
     """What comes near whom follows from all of it, and everything else from that."""
-    assert not keys_of(source, (old, new)) & keys_of(source)
+    assert not keys_of((old, new)) & keys_of()
 
 
-def test_heights_that_stay_are_kept_where_bodies_may_pass_through_each_other(source: ProblemSource) -> None:
+def test_heights_that_stay_are_kept_where_bodies_may_pass_through_each_other() -> None:
     free = ("[collisions]", "# no [collisions]")
-    before = keys_of(source, free)
-    again = keys_of(source, free, ("heights_m = [0.8, 1.0, 1.2]", "heights_m = [0.8, 1.0, 1.1]"))
+    before = keys_of(free)
+    again = keys_of(free, ("heights_m = [0.8, 1.0, 1.2]", "heights_m = [0.8, 1.0, 1.1]"))
     choices_and_new_starts = 2 * 3 + 2
     assert len(again - before) <= choices_and_new_starts < len(again)

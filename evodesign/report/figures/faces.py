@@ -84,7 +84,8 @@ def _rings(rings: list[tuple[float, float]]) -> list[Array]:
 
 def _normal(corners: Array) -> Array | None:
     """Outward unit normal by Newell's sum; None for a face without area."""
-    following = np.roll(corners, -1, axis=0)
-    area = np.cross(corners, following).sum(axis=0)
-    size = float(np.linalg.norm(area))
+    x, y, z = corners.T
+    next_x, next_y, next_z = corners[[*range(1, len(corners)), 0]].T
+    area = np.array([y @ next_z - z @ next_y, z @ next_x - x @ next_z, x @ next_y - y @ next_x])
+    size = math.hypot(*area)
     return None if size < 1e-12 else area / size
