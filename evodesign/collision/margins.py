@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from evodesign.body.placement import Placement
 from evodesign.collision.clearance import BodyDistance, SolidBodies, places_of
-from evodesign.collision.pairs import images_of, placed_in_postures
+from evodesign.collision.random_postures import images_of, placed_in_postures, with_image
 from evodesign.collision.rules import BodyPair
 from evodesign.collision.shapes import Array, ConvexSolid
 from evodesign.collision.supports import ConvexShape, shapes_of
@@ -73,7 +73,7 @@ def fitted_margins(
     shown, known, images = SolidBodies.of_tree(tree), _fitted(tree), images_of(tree)
     if not own or not shown.names:
         return {}
-    both = {pair: (frozenset(pair), frozenset(images.get(link, link) for link in pair)) for pair in own}
+    both = {pair: with_image(pair, images) for pair in own}
     postures = [*placed_in_postures(tree, joints, known)]
     gaps = [placed.gaps(placed.in_all(places_of(known.names, own)), margin) for placed in postures]
     enough = COARSE * 2 * sum(placed.postures for placed in postures)

@@ -18,20 +18,18 @@ Source: MoveIt's matrix of allowed collisions: adjacent, in touch by default, al
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from itertools import combinations
 
 import numpy as np
 
 from evodesign.body.placement import Placement
-from evodesign.collision.clearance import PlacedSolids, SolidBodies, places_of
+from evodesign.collision.clearance import SolidBodies, places_of
+from evodesign.collision.random_postures import images_of, shares_of_postures, with_image
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair
-from evodesign.errors import ModelError
-from evodesign.tree.frames import link_frames, link_poses
-from evodesign.tree.model import Joint, JointKind, Tree
+from evodesign.tree.frames import link_frames
+from evodesign.tree.model import JointKind, Tree
 from evodesign.tree.once_per_tree import once_per_tree
-from evodesign.tree.symmetry import mirror_of
 
 HAND = 0.15
 """A hand's length [m]."""
@@ -39,13 +37,8 @@ HAND = 0.15
 TOUCH = 1e-6
 """Solids nearer than this [m] are in touch: shapes that end where another one begins."""
 
-SAMPLES, AT_ONCE = 500, 50
-"""Postures in which pairs are looked at, and of how many bodies are placed at once, for memory's sake."""
-
 MOST, SELDOM = 0.55, 0.1
 """Shares of the postures: more than half of them, whichever are drawn, and so few that a touch is chance."""
-
-HALF_TURN = np.pi  # [rad]
 
 JOINED, STILL = "joined by a joint", "no joint moves between them"
 
@@ -92,10 +85,13 @@ def exempt_pairs(tree: Tree, joints: Collection[str]) -> Mapping[BodyPair, str]:
 def _exempt_pairs(tree: Tree, joints: tuple[str, ...]) -> Mapping[BodyPair, str]:
     pairs = _link_pairs(tree)
     others = [pair for pair in pairs if not _is_joined(tree, pair)]
-    touching = _touching(tree, others)
+    touching, images = _touching(tree, others), images_of(tree)
+    near = {names for pair in touching for names in with_image(pair, images)}
+    seldom = [pair for pair in others if frozenset(pair) in near]
+    mostly = [pair for pair in others if frozenset(pair) not in near]
     shares = {
-        **shares_of_postures(tree, joints, [pair for pair in others if pair in touching], SELDOM),
-        **shares_of_postures(tree, joints, [pair for pair in others if pair not in touching], MOST),
+        **shares_of_postures(tree, joints, seldom, SELDOM),
+        **shares_of_postures(tree, joints, mostly, MOST),
     }
     found: dict[BodyPair, str] = {}
     for pair in pairs:
@@ -231,14 +227,6 @@ def _is_still(tree: Tree, joints: Collection[str], pair: BodyPair) -> bool:
     return not _between(tree, pair).intersection(joints)
 
 
-def images_of(tree: Tree) -> Mapping[str, str]:
-    """The mirror image of each link, if the tree is symmetric."""
-    try:
-        return mirror_of(tree).links
-    except ModelError:
-        return {}
-
-
 def _touching(
     tree: Tree, pairs: Collection[BodyPair], bodies: SolidBodies | None = None, within: float = TOUCH
 ) -> set[BodyPair]:
@@ -249,63 +237,3 @@ def _touching(
     bodies = SolidBodies.of_tree(tree) if bodies is None else bodies
     placed = bodies.placed(link_frames(tree, Placement(), {}))
     return {(gap.first, gap.second) for gap in placed.overlapping(places_of(bodies.names, pairs), within)}
-
-
-def shares_of_postures(
-    tree: Tree,
-    joints: Collection[str],
-    pairs: Sequence[BodyPair],
-    least: float,
-    *,
-    bodies: SolidBodies | None = None,
-    images: Mapping[str, str] | None = None,
-) -> Mapping[BodyPair, float]:
-    """In what share of postures pairs are in each other, with their mirror images.
-
-    Args:
-        tree: of the agent.
-        joints: that move; their positions are drawn from their ranges, always the same ones.
-        pairs: of links.
-        least: share of those that are given.
-        bodies: the links' solids; left out, the tree's own.
-        images: the mirror image of each link; left out, the tree's own.
-    """
-    if not pairs:
-        return {}
-    bodies = SolidBodies.of_tree(tree) if bodies is None else bodies
-    images = images_of(tree) if images is None else images
-    counts: Counter[frozenset[str]] = Counter()
-    both = {pair: (frozenset(pair), frozenset(images.get(link, link) for link in pair)) for pair in pairs}
-    samples = 0
-    for placed in placed_in_postures(tree, joints, bodies):
-        in_each_other = placed.in_each_other(placed.in_all(places_of(bodies.names, pairs)))
-        counts.update(frozenset(pair) for _, *pair in in_each_other)
-        samples += placed.postures
-        wanted = 2 * (least * SAMPLES - (SAMPLES - samples))
-        pairs = [pair for pair in pairs if sum(counts[each] for each in both[pair]) >= wanted]
-    shares = {pair: sum(counts[each] for each in both[pair]) / (2 * samples) for pair in pairs}
-    return {pair: share for pair, share in shares.items() if share >= least}
-
-
-def placed_in_postures(tree: Tree, joints: Collection[str], bodies: SolidBodies) -> Iterator[PlacedSolids]:
-    """Solids in random postures, always the same ones, many at once.
-
-    Args:
-        tree: of the agent.
-        joints: that move; their positions are drawn from their ranges.
-        bodies: the links' solids.
-    """
-    rng = np.random.default_rng(0)
-    ranges = {joint.name: _range(joint) for joint in tree.joints if joint.name in joints}
-    lower, upper = np.array([*ranges.values()]).reshape(-1, 2).T
-    drawn = rng.uniform(lower, upper, (SAMPLES, len(ranges)))
-    poses = link_poses(tree, dict(zip(ranges, drawn.T, strict=True)))
-    turns, origins = (np.stack([poses[name][part] for name in bodies.names], axis=1) for part in (0, 1))
-    for first in range(0, len(turns), AT_ONCE):  # one where nothing moves
-        yield bodies.placed_at(turns[first : first + AT_ONCE], origins[first : first + AT_ONCE])
-
-
-def _range(joint: Joint) -> tuple[float, float]:
-    """Its limits, or half a turn to either side where they are a turn apart."""
-    wide = joint.upper - joint.lower >= 2.0 * HALF_TURN
-    return (-HALF_TURN, HALF_TURN) if wide else (joint.lower, joint.upper)
