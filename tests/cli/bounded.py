@@ -39,6 +39,9 @@ def _bound() -> None:
 if __name__ == "__main__":
     import casadi  # noqa: F401
     import lxml.etree  # noqa: F401
+    import scipy.interpolate  # what a command loads when it needs it counts as what it imports
+    import scipy.optimize
+    import scipy.spatial  # noqa: F401
 
     import evodesign.cli.check
     import evodesign.guess.preflight
