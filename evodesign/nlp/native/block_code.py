@@ -23,7 +23,7 @@ from evodesign.nlp.native.calls import NOT_LOADED, CalledSolver, CSolution, meth
 from evodesign.nlp.native.cut_functions import in_pieces
 from evodesign.nlp.native.elimination import elimination
 from evodesign.nlp.native.lanes import LANES_SYMBOL, in_lanes, in_one_lane, lane_flags
-from evodesign.nlp.native.optimised import Optimised, Source, functions_of
+from evodesign.nlp.native.optimised import FunctionSource, Optimised, functions_of
 from evodesign.nlp.native.program_code import UNBOUNDED
 from evodesign.nlp.native.scatter import Scatter, hessian_targets, jacobian_targets, scattered
 from evodesign.nlp.native.structures import BlockRecord, Memory
@@ -67,7 +67,7 @@ def block_functions(
         seldom: whether they run so seldom that the compiler had better be quick than its code.
     """
     expressions = ca.Function("block", block.arguments, block.values).serialize()
-    source = Source((code_digest(__name__), expressions), lambda: _c_text(block), _file, lane_flags)
+    source = FunctionSource((code_digest(__name__), expressions), lambda: _c_text(block), _file, lane_flags)
     try:
         found = functions_of(source, seldom=seldom)
         return found if isinstance(found, NotCompiled) else (_loaded(found[0]), found[1])

@@ -13,7 +13,7 @@ from evodesign.nlp.codegen import Library
 from evodesign.nlp.compiler import NotCompiled
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.native.calls import NOT_LOADED, CalledSolver, method_library
-from evodesign.nlp.native.optimised import Optimised, Source, functions_of
+from evodesign.nlp.native.optimised import FunctionSource, Optimised, functions_of
 from evodesign.nlp.native.program_code import PROBLEM, fixed_variables, program_text
 from evodesign.nlp.program import Array, Program
 
@@ -91,7 +91,7 @@ def native_method(program: Program, *, seldom: bool = False) -> NativeMethod | N
     if isinstance(method, NotCompiled):
         return method
     try:
-        found = functions_of(Source(_of(program), lambda: program_text(program)), seldom=seldom)
+        found = functions_of(FunctionSource(_of(program), lambda: program_text(program)), seldom=seldom)
         return found if isinstance(found, NotCompiled) else NativeMethod(program, method, *found)
     except OSError as error:
         return NotCompiled(f"{NOT_LOADED}: {error}")

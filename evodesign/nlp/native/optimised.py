@@ -28,7 +28,7 @@ NICENESS = 10
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class FunctionSource:
     """What functions are compiled from.
 
     Args:
@@ -65,7 +65,7 @@ class Source:
         return *FUNCTION_FLAGS, *self.flags(compiler)
 
 
-def functions_of(source: Source, *, seldom: bool) -> tuple[Library, Optimised | None] | NotCompiled:
+def functions_of(source: FunctionSource, *, seldom: bool) -> tuple[Library, Optimised | None] | NotCompiled:
     """Functions by the quick compiler, and what optimises them; or optimised ones that were made before.
 
     Args:
@@ -102,7 +102,7 @@ class Optimised:
         cache: where libraries are kept.
     """
 
-    source: Source
+    source: FunctionSource
     compiler: Compiler
     cache: Cache
     _coming: Future[Library | NotCompiled] | None = None
