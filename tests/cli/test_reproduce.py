@@ -18,9 +18,9 @@ from evodesign.runlog.run import read_run
 
 pytestmark = pytest.mark.slow
 
-SMALL = "\n[solver]\nsymmetry = 'on'\nstart_portfolio = false\ncompile = false\n"
-QUICK = "\n[solver]\nsymmetry = 'off'\nstart_portfolio = false\ncompile = false\n"
-"""Nothing is worked out beforehand; solves take longer, of which there are few."""
+SMALL = "\n[solver]\nsymmetry = 'on'\nstart_portfolio = false\n"
+QUICK = "\n[solver]\nsymmetry = 'off'\nstart_portfolio = false\n"
+"""Nothing is worked out beforehand; solves are few."""
 
 
 @pytest.fixture(scope="module")
