@@ -1,4 +1,4 @@
-"""A robot and a person lift a box in 1.5 s: torques and power over time. Half a minute the first time.
+"""A robot and a person lift a box in 1.5 s: torques and power over time. A minute or two the first time.
 
 The robot has longer legs than it was built with; its motion is solved and checked as a search would.
 

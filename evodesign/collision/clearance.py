@@ -253,14 +253,12 @@ class PlacedSolids:
         Returns:
             The posture of each such pair, and the names of its bodies.
         """
-        near, (bodies, of) = self.near(places, 0.0), self.bodies.links
-        postures, solids = np.divmod(near, len(of))
-        keys = np.column_stack([postures[:, 0], of[solids]]).tolist()
-        found: set[tuple[int, int, int]] = set()
-        for (posture, first, second), (i, j) in zip(keys, near.tolist(), strict=True):
-            if (posture, first, second) not in found and self._overlap(i, j, least):
-                found.add((posture, first, second))
-        return {(posture, bodies[first], bodies[second]) for posture, first, second in found}
+        found: set[PosturePair] = set()
+        for i, j in self.near(places, 0.0).tolist():
+            pair = self.pair_of(i, j)
+            if pair not in found and self._overlap(i, j, least):
+                found.add(pair)
+        return found
 
     def near(self, places: Places, within: float) -> Places:
         """Those of some pairs that may be nearer to each other than a distance [m]: by balls and boxes."""
@@ -282,8 +280,8 @@ class PlacedSolids:
         """How far the balls about pairs of solids are apart [m]."""
         first, second = places.T
         between = self.centres[first] - self.centres[second]
-        distances, count = np.sqrt(np.einsum("ij,ij->i", between, between)), len(self.names)
-        return np.asarray(distances - self.bodies.radii[first % count] - self.bodies.radii[second % count])
+        distances = np.sqrt(np.einsum("ij,ij->i", between, between))
+        return np.asarray(distances - self.bodies.radii[places % len(self.names)].sum(axis=1))
 
     def _boxes_apart(self, places: Places) -> Array:
         """How far the boxes about pairs of solids are apart at least [m]: along the normals of faces."""

@@ -14,7 +14,7 @@ from evodesign.runlog.run import RunLog, read_run
 from tests.fuzz.segment_cases import Message, examine, messages_of, sound_run, spoilt
 from tests.runlog import crafted
 
-QUICK_CASES, CASES, PARTS = 100, 800, 2
+QUICK_CASES, CASES, PARTS = 100, 1_500, 4
 CORPUS = sorted((Path(__file__).parent / "corpus/segments").iterdir())
 
 

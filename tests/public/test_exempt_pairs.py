@@ -19,7 +19,7 @@ pytestmark = pytest.mark.needs_robots
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:You passed package dir")
-@pytest.mark.parametrize("name", ["g1"])
+@pytest.mark.parametrize("name", ["g1", "gr1"])
 def test_moving_bodies_that_may_overlap_do_so_in_the_unscaled_robot(name: str, tmp_path: Path) -> None:
     """Hulls of waists, hips and ankles overlap where their meshes do not."""
     _, problem = guessed(ROBOTS[name], tmp_path)

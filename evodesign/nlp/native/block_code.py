@@ -6,6 +6,7 @@ import ctypes
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import accumulate
 from typing import Any
 
@@ -107,21 +108,16 @@ class NativeMaker:
         if key not in self._made:
             self._made[key] = NativeBlocks(self._parts, self._functions, held, self._method)
         found = self._made[key].solve(options, start, bounds, parameters)
-        self._optimise(time.perf_counter() - began)
+        seconds = time.perf_counter() - began
+        for place, optimised in enumerate(self._optimised):
+            if optimised:
+                load, quick = partial(self._load, place), self._functions[place].file
+                self._optimised[place] = optimised.taken_over(quick, seconds, load)
         return found
 
-    def _optimise(self, seconds: float) -> None:
-        """Take over what has been optimised behind, if a solve of so long [s] makes it worth that."""
-        for place, optimised in enumerate(self._optimised):
-            try:
-                found = optimised.after(self._functions[place].file, seconds) if optimised else None
-                if isinstance(found, Library):
-                    self._functions[place] = _loaded(found)
-                    self._made.clear()
-            except (OSError, RuntimeError) as error:
-                found = NotCompiled(f"{NOT_LOADED}: {error}")
-            if found:
-                self._optimised[place] = None
+    def _load(self, place: int, library: Library) -> None:
+        self._functions[place] = _loaded(library)
+        self._made.clear()
 
 
 def native_maker(parts: Sequence[Repeated], *, seldom: bool = False) -> NativeMaker | NotCompiled:

@@ -62,22 +62,12 @@ class NativeMethod:
         began = time.perf_counter()
         found = self._called.solve(options, start[self._free], parameters)
         if self._optimised:
-            self._optimise(self._optimised, time.perf_counter() - began)
+            seconds = time.perf_counter() - began
+            self._optimised = self._optimised.taken_over(self.functions, seconds, self._load)
         symbols, forces = np.empty(len(start)), np.empty(len(start))
         symbols[self._free], symbols[self._fixed] = found.variables, self._values
         forces[self._free], forces[self._fixed] = found.bounds, -found.fixed_slopes
         return Ending(symbols, found.cost, found.word, found.iterations, forces, found.rows, found.slopes)
-
-    def _optimise(self, optimised: Optimised, seconds: float) -> None:
-        """Take over what has been optimised behind, if a solve of so long [s] makes it worth that."""
-        try:
-            found = optimised.after(self.functions, seconds)
-            if isinstance(found, Library):
-                self._load(found)
-        except (OSError, MemoryError) as error:
-            found = NotCompiled(f"{NOT_LOADED}: {error}")
-        if found:
-            self._optimised = None
 
 
 def native_method(program: Program, *, seldom: bool = False) -> NativeMethod | NotCompiled:

@@ -107,6 +107,22 @@ class Optimised:
     cache: Cache
     _coming: Future[Library | NotCompiled] | None = None
 
+    def taken_over(self, quick: Library, seconds: float, load: Callable[[Library], None]) -> Optimised | None:
+        """Have the functions loaded if they are ready; itself as long as they may come.
+
+        Args:
+            quick: the library that runs.
+            seconds: that it has been solved with once more [s].
+            load: puts another library in its place; where it fails, the quick one stays.
+        """
+        try:
+            found = self.after(quick, seconds)
+            if isinstance(found, Library):
+                load(found)
+        except (OSError, RuntimeError, MemoryError):
+            return None
+        return None if found else self
+
     def after(self, quick: Library, seconds: float) -> Library | NotCompiled | None:
         """The functions, or why there are none, when it is known.
 
