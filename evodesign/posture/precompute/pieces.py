@@ -17,7 +17,6 @@ import numpy as np
 from evodesign.collision.rules import BodyPair
 from evodesign.design.spread import spread_designs
 from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
-from evodesign.nlp.program import Start
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
@@ -30,10 +29,9 @@ from evodesign.posture.precompute.plan import (
 )
 from evodesign.posture.precompute.precomputed import HeldLoads, PersonReach, Precomputed
 from evodesign.posture.seeking.budget import BUDGET
-from evodesign.posture.seeking.landscape import Design
 from evodesign.posture.seeking.start_portfolio import StartPortfolio
 from evodesign.posture.seeking.start_training import USUAL, start_portfolio
-from evodesign.records import Case, Hold, Status
+from evodesign.records import Case
 
 LEARNED_FROM, LOOKED_AT = 96, 8
 """Designs whose reach is asked for, at most, to learn from those that hold a load; and how many times as many
@@ -147,12 +145,6 @@ def _portfolio(
         return start_portfolio(reach.landscape(sense), designs)
     checker_of = None if scene.robot.collisions is None else DesignCheckers(scene, setting.space).of
     problem = PostureProblem(own, setting.symmetry, known, solvers)
-    reaches = {design: (lowest, highest) for design, lowest, highest in known.designs}
-
-    def in_the_middle(design: Design) -> Start | None:
-        """How a design holds the load in the middle of its reach, where that is easiest."""
-        middle = problem.landscape(Hold(height_m=sum(reaches[design]) / 2.0), checker_of)
-        ends = (middle.solve(design, start) for start in middle.universal)
-        return next((end.values for end in ends if end.status is Status.SOLVED), None)
-
-    return start_portfolio(problem.landscape(task, checker_of), designs, USUAL, in_the_middle)
+    landscape = problem.landscape(task, checker_of)
+    near = known.starts(piece.pair, piece.after) if piece.after else ()
+    return start_portfolio(replace(landscape, universal=near or landscape.universal), designs)

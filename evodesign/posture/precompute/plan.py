@@ -43,11 +43,13 @@ class Piece:
         subject: what it is about.
         pair: names of the person and the load that it is of, or is worked out with.
         task: None if it belongs to none.
+        after: the task whose starts its own are sought from; None if they are sought all over.
     """
 
     subject: Subject
     pair: tuple[str, str]
     task: Task | None = None
+    after: Task | None = None
 
     def __str__(self) -> str:
         at = "from" if isinstance(self.task, Lift) else "at"
@@ -109,12 +111,13 @@ def stages(
         return [meetings, people]
     middle = setting.middle.pair
     own = [scene.pair for scene in setting.scenes] if setting.symmetric else [middle]
-    around = (min(task.height_m for task in tasks) + max(task.height_m for task in tasks)) / 2.0
-    longest = sorted(tasks, key=lambda task: -abs(task.height_m - around))  # extreme heights take longest
-    starts = [Piece(Subject.POSTURE, pair, task) for task in longest for pair in own]
+    first = sorted(tasks, key=lambda task: task.height_m)[(len(tasks) - 1) // 2]
+    longest = sorted(tasks, key=lambda task: -abs(task.height_m - first.height_m))
+    starts = [Piece(Subject.POSTURE, pair, first) for pair in own]
+    others = [Piece(Subject.POSTURE, pair, task, first) for task in longest if task != first for pair in own]
     extremes = [Piece(Subject.LOWEST, middle), Piece(Subject.HIGHEST, middle)]
     designs = Piece(Subject.DESIGNS, middle)
-    found = [meetings, [designs, *people], [*extremes, *starts]]
+    found = [meetings, [designs, *people], [*starts, *extremes], others]
     return [*found, lift_pieces(setting, lifts)] if lifts else found
 
 

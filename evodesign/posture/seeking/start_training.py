@@ -3,8 +3,7 @@
 Random starts hardly ever lead to the best of dozens of optima; optima of other designs do. Some quasi-random
 designs are solved from the landscape's universal starts and from a few random ones. Then the best optimum of
 a design that no start serves is offered to all designs, until each is served: a start serves a design if the
-solver converges from it to within 1 % of the best optimum that any start led to. A design that no
-start leads anywhere may begin elsewhere at last. Of the offers those are kept that serve all together with
+solver converges from it to within 1 % of the best optimum that any start led to. Of the offers those are kept that serve all together with
 little work. The same landscape always gets the same portfolio.
 
 Source: greedy cover: Johnson 1974.
@@ -12,7 +11,7 @@ Source: greedy cover: Johnson 1974.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from typing import Generic
@@ -54,7 +53,6 @@ def start_portfolio(
     landscape: Searched[End],
     designs: Iterable[Design],
     training: Training = USUAL,
-    elsewhere: Callable[[Design], Start | None] | None = None,
 ) -> StartPortfolio:
     """The portfolio of a landscape.
 
@@ -62,7 +60,6 @@ def start_portfolio(
         landscape: whose optima are sought.
         designs: to learn from; the portfolio makes do with those that there are.
         training: how much work to do.
-        elsewhere: gives another start of a design that no offer leads anywhere.
     """
     learned = [*islice(designs, training.designs)]
     work = _Ends(landscape, learned)
@@ -72,11 +69,6 @@ def start_portfolio(
         work.begun(place, [*landscape.universal, *drawn])
     for _ in range(training.offers):
         wanted = work.wanted()
-        if wanted is None and elsewhere is not None:
-            for place in work.lost():
-                start = elsewhere(learned[place])
-                work.begun(place, [start] if start else [])
-            elsewhere, wanted = None, work.wanted()
         if wanted is None:
             break
         work.offered(wanted)
@@ -129,8 +121,7 @@ class _Ends(Generic[End]):
                 return _Tried(cost_of(settled), end.iterations + settled.iterations - iterations)
         settled = self._landscape.settled(self._designs[place], end)
         found = self._learned(place, settled)
-        if np.isfinite(cost_of(settled)):
-            self._settled[place].append((cost, end.iterations, found))
+        self._settled[place].append((cost, end.iterations, found))
         return _Tried(cost_of(found), found.iterations)
 
     def wanted(self) -> Start | None:
@@ -141,10 +132,6 @@ class _Ends(Generic[End]):
                 self._refused.add(place)
                 return self._landscape.needed(best)
         return None
-
-    def lost(self) -> list[int]:
-        """The designs of which no optimum is known."""
-        return [place for place, best in enumerate(self._best) if best is None]
 
     def _learned(self, place: int, end: End) -> End:
         """An end; as one that failed where it would be the best of a design and does not count."""
