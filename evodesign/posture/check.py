@@ -17,6 +17,7 @@ import pinocchio as pin
 
 from evodesign.body.placement import Vector
 from evodesign.collision.clearance import BodyDistance
+from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair
 from evodesign.collision.scene_bodies import CheckedBodies, SceneBodies
 from evodesign.mechanics.disturbance import Disturbance
 from evodesign.mechanics.floating_base import ROOT, BodyState, Configuration, FloatingBody
@@ -179,6 +180,25 @@ def near_bodies(
     return SceneBodies(solids, load).near(poses, load_height, within)
 
 
+def own_pairs(gap: BodyDistance) -> Iterator[tuple[str, BodyPair]]:
+    """The pair as those see it whom it is of, by agent: who is near the other one keeps to its own side."""
+    agent, _, link = gap.first.partition(" ")
+    if gap.second in (LOAD, FLOOR):
+        yield agent, (link, gap.second)
+        return
+    other, _, second = gap.second.partition(" ")
+    if other == agent:
+        yield agent, (link, second)
+    else:
+        yield agent, (link, PARTNER)
+        yield other, (second, PARTNER)
+
+
+def own_overlaps(gaps: Iterable[BodyDistance]) -> dict[tuple[str, BodyPair], float]:
+    """How deep bodies are in each other [m], as those see it whom they are of: by agent and pair."""
+    return {own: -gap.distance for gap in gaps for own in own_pairs(gap)}
+
+
 class Checker:
     """Residuals of postures of one design in a scene."""
 
@@ -206,20 +226,22 @@ class Checker:
             self._solids[key] = SceneBodies(solids, self._scene.payload.size) if solids else None
         return self._solids[key]
 
-    def overlaps(self, instants: Sequence[Instant], load_heights: Sequence[float]) -> bool:
-        """Whether bodies that must not do so overlap in postures, with the load's centre at heights [m]."""
+    def overlaps(
+        self, instants: Sequence[Instant], load_heights: Sequence[float]
+    ) -> list[list[BodyDistance]]:
+        """Bodies that must not do so and overlap in each posture, with the load's centre at heights [m]."""
         solids = self._bodies()
         if solids is None:
-            return False
+            return [[] for _ in instants]
 
-        def deepest(instant: Instant, height: float) -> float:
+        def found(instant: Instant, height: float) -> list[BodyDistance]:
             poses = {
                 model.agent.name: (model.agent.sign, model.at(instant.postures[model.agent.name]).poses)
                 for model in self._models
             }
-            return min((gap.distance for gap in solids.near(poses, height)), default=0.0)
+            return [gap for gap in solids.near(poses, height) if gap.distance < -TOLERANCE]
 
-        return any(deepest(*each) < -TOLERANCE for each in zip(instants, load_heights, strict=True))
+        return [found(*each) for each in zip(instants, load_heights, strict=True)]
 
     def residuals(
         self, instant: Instant, load_height: float, motion: SceneMotion = AT_REST
@@ -295,6 +317,12 @@ class Unchecked(Checker):
     def elsewhere(self, scene: Scene, human: AgentModel) -> Checker:
         """Itself."""
         return self
+
+    def overlaps(
+        self, instants: Sequence[Instant], load_heights: Sequence[float]
+    ) -> list[list[BodyDistance]]:
+        """None."""
+        return [[] for _ in instants]
 
     def task_residuals(
         self, instants: Sequence[Instant], load_heights: Sequence[float]

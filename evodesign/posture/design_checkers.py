@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 
 from evodesign.collision.zero_posture import built_in_slack
 from evodesign.design.space import DesignSpace
 from evodesign.mechanics.scene import Agent, Scene
 from evodesign.posture.check import AgentModel, Checker
+
+AT_HAND = 64
+"""Designs whose check is kept: more than starts are learned from."""
 
 
 def can_be_built(robot: Agent, space: DesignSpace) -> Callable[[Sequence[float]], bool]:
@@ -22,7 +26,7 @@ def can_be_built(robot: Agent, space: DesignSpace) -> Callable[[Sequence[float]]
 
 
 class DesignCheckers:
-    """The check of any design; that of the latest one is at hand.
+    """The check of any design; those of the latest ones are at hand.
 
     Args:
         scene: robot, person and load.
@@ -32,11 +36,12 @@ class DesignCheckers:
     def __init__(self, scene: Scene, space: DesignSpace) -> None:
         self._scene, self._family = scene, space.family(scene.robot.tree)
         self._robot, self._human = (AgentModel.of(agent, agent.tree) for agent in (scene.robot, scene.human))
-        self._latest: tuple[tuple[float, ...], Checker] | None = None
+        self._of = lru_cache(AT_HAND)(self._made)
 
     def of(self, design: Sequence[float]) -> Checker:
         """That of a design."""
-        if self._latest is None or self._latest[0] != tuple(design):
-            robot = self._robot.resized(self._family.resized(design))
-            self._latest = tuple(design), Checker(self._scene, robot, self._human)
-        return self._latest[1]
+        return self._of(tuple(design))
+
+    def _made(self, design: tuple[float, ...]) -> Checker:
+        robot = self._robot.resized(self._family.resized(design))
+        return Checker(self._scene, robot, self._human)

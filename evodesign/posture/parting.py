@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from evodesign.collision.rules import BodyPair
 from evodesign.nlp.buffered import BufferedFunction
+from evodesign.nlp.codegen import compiled_function
 from evodesign.nlp.program import ConstraintBlock, Program, Start
 from evodesign.nlp.solver import has_any
 from evodesign.posture.placed_shape import SHAPE, PlacedShape
@@ -20,14 +23,17 @@ from evodesign.posture.terms.base import Body
 from evodesign.posture.terms.collisions import (
     NUMBERS,
     OFF,
-    PARTING,
     directed,
     margin_of,
+    meeting_of,
     placed_pairs,
 )
 
 Array = NDArray[np.float64]
 Places = NDArray[np.intp]
+
+Overlaps = Mapping[tuple[str, BodyPair], float]
+"""How deep bodies are in each other [m], by agent and pair."""
 
 ALMOST = 1e-6
 """How much less than the margin [m] is no overlap."""
@@ -114,6 +120,27 @@ class Parted:
         numbers, held = self._at(values, given)
         return self._named(held, self._meetings.violated(numbers, held, short))
 
+    def wider(self, values: Start, given: Mapping[str, Any], overlaps: Sequence[Overlaps]) -> Start:
+        """What parts bodies that the check finds in each other; none where they have no rows.
+
+        Args:
+            values: of a solution.
+            given: the other parameters.
+            overlaps: of the true bodies at each instant, by agent and pair how deep [m].
+        """
+        numbers, held = self._at(values, given)
+        deep: dict[int, float] = {}
+        of = Counter[str]()
+        for each, first in zip(self._bodies, self._ends.tolist(), strict=False):
+            form = each.body.form
+            agent, places = form.agent.name, {meeting: at for at, meeting in enumerate(directed(form), first)}
+            for (name, pair), depth in overlaps[of[agent]].items():
+                place = places.get(meeting_of(form, pair)) if name == agent else None
+                if place is not None:
+                    deep[place] = max(depth, deep.get(place, 0.0))
+            of[agent] += 1
+        return self._named(held, self._meetings.wider(numbers, held, deep))
+
     def needed(self, values: Start, multipliers: Array, price: float) -> Start:
         """What parts bodies that a row holds in touch, at a price per metre; nothing for all others."""
         held = self._held(values)
@@ -173,16 +200,17 @@ class Meetings:
     """Functions of all meetings of some bodies, and which directions part them.
 
     Args:
-        screen: how far each pair of shapes is apart at least, and along its meeting's direction [m].
-        shapes: numbers of each pair.
+        shapes: numbers of each pair of shapes.
+        screen: how far the two of each pair are apart at least, and along a meeting's direction [m]: from the
+            numbers of all pairs, and those that part each.
         places: the meeting of each pair.
         starts: the first pair of each meeting.
         rows: the row of each pair in its program.
         margins: of each meeting [m].
     """
 
-    screen: BufferedFunction
     shapes: BufferedFunction
+    screen: BufferedFunction
     places: Places
     starts: Places
     rows: Places
@@ -213,6 +241,25 @@ class Meetings:
 
         return self._changed(at, held, looked_at, wanted)
 
+    def wider(self, at: Sequence[Array], held: Array, deep: Mapping[int, float]) -> dict[int, Array]:
+        """What parts bodies that are in each other although their shapes are apart.
+
+        Args:
+            at: the functions' arguments.
+            held: numbers of each meeting.
+            deep: how deep the bodies of some meetings are in each other [m], by place.
+        """
+        pairs = self._pairs(at)
+        along, found = self._screened(pairs, held).along, dict[int, Array]()
+        for place, depth in deep.items():
+            numbers, apart = held[place].copy(), float(along[place])
+            if not numbers[0]:
+                (ways,) = ways_of([pairs[self.places == place]])
+                numbers, apart = ways.best.copy(), ways.distance
+            numbers[-1] = apart + depth - self.margins[place]
+            found[place] = numbers
+        return found
+
     def better(self, at: Sequence[Array], held: Array, prices: Array) -> tuple[dict[int, Array], float]:
         """What parts bodies farther that a row holds in touch, and what that gains to first order.
 
@@ -224,7 +271,8 @@ class Meetings:
         gains: list[float] = []
 
         def looked_at(seen: _Screened) -> NDArray[np.bool_]:
-            return np.asarray(seen.on & (prices > 0.0) & (seen.along <= seen.margins + TOUCHING))
+            held_in_touch = (prices > 0.0) & (seen.along <= seen.margins + TOUCHING)
+            return np.asarray(seen.on & held_in_touch)
 
         def wanted(ways: Ways, place: int, along: float) -> Array | None:
             farther = ways.distance - along
@@ -251,19 +299,26 @@ class Meetings:
             wanted: new numbers for one of them, from the ways to part it, its place, and how far it is apart
                 along its direction [m]; or None.
         """
-        least, along = map(self.least, self.screen(*at))
-        on = np.asarray(held[:, 0] != 0.0)
-        places = np.flatnonzero(looked_at(_Screened(on, least, along, self.margins))).tolist()
+        pairs = self._pairs(at)
+        seen = self._screened(pairs, held)
+        places = np.flatnonzero(looked_at(seen)).tolist()
         if not places:
             return {}
-        pairs = self.shapes(*at)[0].reshape(-1, 2, SHAPE)
         ways = ways_of([pairs[self.places == place] for place in places])
-        found = {place: wanted(own, place, along[place]) for place, own in zip(places, ways, strict=True)}
+        found = {
+            place: wanted(own, place, seen.along[place]) for place, own in zip(places, ways, strict=True)
+        }
         return {place: new for place, new in found.items() if new is not None}
 
-    def least(self, distances: Array) -> Array:
-        """The least of each meeting's pairs [m]."""
-        return np.asarray(np.minimum.reduceat(distances, self.starts))
+    def _pairs(self, at: Sequence[Array]) -> Array:
+        """The numbers of each pair of shapes, shape (pairs, 2, SHAPE)."""
+        return self.shapes(*at)[0].reshape(-1, 2, SHAPE)
+
+    def _screened(self, pairs: Array, held: Array) -> _Screened:
+        """The meetings at a point: the nearest pair of each."""
+        distances = self.screen(pairs.ravel(), held[self.places].ravel())
+        least, along = (np.minimum.reduceat(each, self.starts) for each in distances)
+        return _Screened(np.asarray(held[:, 0] != 0.0), least, along, self.margins)
 
     def prices(self, multipliers: Array) -> Array:
         """What each meeting's pairs cost together, per metre, from the multipliers of a program's rows."""
@@ -281,23 +336,19 @@ def meetings_of(
         arguments: columns of symbols that everything follows from.
     """
     pairs: list[tuple[PlacedShape, PlacedShape]] = []
-    along: list[Any] = []
     places: list[int] = []
     margins: list[float] = []
     for each in bodies:
-        for number, meeting in enumerate(directed(each.body.form)):
+        for meeting in directed(each.body.form):
             own = placed_pairs(each.body, meeting)
-            held = each.body.values[PARTING][NUMBERS * number : NUMBERS * (number + 1)]
             pairs += own
-            along += [one.apart_along(other, held) for one, other in own]
             places += [len(margins)] * len(own)
             margins.append(margin_of(each.body.form, meeting))
-    least = [_least_apart(*pair) for pair in pairs]
-    shapes = [ca.vertcat(one.numbers, other.numbers) for one, other in pairs]
-    given = list(arguments)
+    numbers = [ca.vertcat(one.numbers, other.numbers) for one, other in pairs]
+    column = ca.densify(ca.horzcat(ca.SX(2 * SHAPE, 0), *numbers))
     return Meetings(
-        _buffered("screen", given, [ca.vertcat(ca.SX(0, 1), *each) for each in (least, along)]),
-        _buffered("shapes", given, [ca.horzcat(ca.SX(2 * SHAPE, 0), *shapes)]),
+        BufferedFunction(ca.Function("shapes", list(arguments), [column], {"cse": True})),
+        BufferedFunction(_screen().map(len(pairs))),
         np.array(places, np.intp),
         np.searchsorted(places, np.arange(len(margins))),
         rows_of(bodies, constraints),
@@ -312,10 +363,6 @@ def rows_of(bodies: Sequence[PartedBody], constraints: Sequence[ConstraintBlock]
     return np.array([row for each in bodies for row in places[each.rows]], np.intp)
 
 
-def _buffered(name: str, given: list[Any], results: list[Any]) -> BufferedFunction:
-    return BufferedFunction(ca.Function(name, given, [ca.densify(each) for each in results], {"cse": True}))
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class _Screened:
     """Meetings at a point: whether rows are on; how far apart at least, and along directions [m]."""
@@ -326,13 +373,19 @@ class _Screened:
     margins: Array
 
 
-def _least_apart(one: PlacedShape, other: PlacedShape) -> Any:
-    """How far two shapes are apart at least [m]: along the line of centres, sides and axes."""
-    between = other.centre - one.centre
-    vectors = [between, *one.sides, *other.sides]
-    found = None
-    for vector in vectors:
-        unit = vector / ca.sqrt(ca.sumsqr(vector) + TINY)
+@cache
+def _screen() -> Any:
+    """Of two shapes' numbers, and those that part them: how far they are apart at least, and so parted [m].
+
+    At least they are as far apart as along the line of centres, sides and axes.
+    """
+    pair, numbers = ca.SX.sym("pair", 2 * SHAPE), ca.SX.sym("parted", NUMBERS)
+    one, other = (PlacedShape.of(pair[half * SHAPE : (half + 1) * SHAPE]) for half in range(2))
+    between, least = other.centre - one.centre, -ca.inf
+    for vector in (between, *one.sides, *other.sides):
+        square = ca.sumsqr(vector)
+        unit = vector / ca.sqrt(square + TINY)
         apart = ca.fabs(ca.dot(unit, between)) - one.support(unit) - other.support(unit)
-        found = apart if found is None else ca.fmax(found, apart)
-    return found
+        least = ca.fmax(least, ca.if_else(square > 4.0 * TINY, apart, -ca.inf))
+    along = one.apart_along(other, numbers)
+    return compiled_function(ca.Function("screen", [pair, numbers], [least, along], {"cse": True}))

@@ -179,7 +179,7 @@ class PostureProblem:
             return found
         return replace(
             found,
-            accepted=lambda design, raw: formulation.keeps_clear(raw, task, checker_of(design)),
+            cleared=lambda design, raw: formulation.cleared(design, raw, task, checker_of(design)),
         )
 
     def _trials(
@@ -233,7 +233,11 @@ class PostureProblem:
         key, of = (formulation, task, bool(portfolio)), (tuple(design), type(checker))
         found = self._latest.get(key)
         if found is None or found[0] != of:
-            found = of, formulation.solve(design, task, portfolio, checker)
+            trial = formulation.solve(design, task, portfolio, checker)
+            others = self._known.other_starts(self._setting.scene.pair, task) if portfolio else ()
+            if trial.is_doubtful and others:
+                trial = trial.beside(formulation.solve(design, task, others, checker))
+            found = of, trial
             self._latest[key] = found
         return found[1]
 

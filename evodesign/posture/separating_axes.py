@@ -98,7 +98,7 @@ def _functions() -> tuple[BufferedFunction, BufferedFunction]:
             (ca.SX.zeros(3), other.axes.T @ unit) if of_other else (one.axes.T @ unit, ca.SX.zeros(3))
         )
         units.append(unit)
-        numbers.append(ca.vertcat(1.0, own, others))
+        numbers.append(ca.vertcat(1.0, own, others, 0.0))
         distances.append(ca.if_else(square > 4.0 * SHORT, one.apart(other, unit), -np.inf))
     given = ca.SX.sym("directions", 3 * len(units))
     along = [one.apart(other, given[3 * place : 3 * place + 3]) for place in range(len(units))]

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any, cast
 
 import pytest
 
-from evodesign.evaluation.precompute import precompute_setting, precomputed
+from evodesign.evaluation.precompute import precompute_setting, precomputed, staged_pieces
 from evodesign.evaluation.progress import PrecomputeProgress
 from evodesign.nlp.disk_cache import Cache, user_cache
 from evodesign.pool.base import Finished, Pool
 from evodesign.posture.precompute.keys import key_of
-from evodesign.posture.precompute.plan import Piece
-from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.posture.precompute import pieces
+from evodesign.posture.precompute.pieces import compute_piece
+from evodesign.posture.precompute.plan import Piece, Subject
+from evodesign.posture.precompute.precomputed import NO_STARTS, Precomputed
+from evodesign.posture.seeking.landscape import Landscape
+from evodesign.posture.seeking.start_portfolio import StartPortfolio
 from evodesign.problem.build import DesignProblem
 
 
@@ -77,3 +82,36 @@ def test_all_pieces_are_told_before_the_first_is_worked_out(
     assert len(forgetful.asked) == 6, each
     assert watcher.told == told
     assert len(watcher.ready) == len({*watcher.ready}) == forgetful.worked_out == sum(told)
+
+
+def test_starts_of_other_heights_are_sought_from_those_of_the_middle_one(
+    problem: DesignProblem, known: Precomputed, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The middle one is worked out before; where it has no starts, others are sought all over, as its own are."""
+    sought: list[Landscape] = []
+
+    def portfolio(landscape: Landscape, designs: object) -> StartPortfolio:
+        sought.append(landscape)
+        return NO_STARTS
+
+    monkeypatch.setattr(pieces, "start_portfolio", portfolio)
+    stages = [[each for each in stage if each.subject is Subject.POSTURE] for stage in staged_pieces(problem)]
+    (first,), others = [stage for stage in stages if stage]
+    assert [task.height_m for task in problem.holds] == [0.8, 1.0, 1.2]
+    assert (first.task, first.after) == (problem.holds[1], None)
+    assert {other.task for other in others} == {problem.holds[0], problem.holds[2]}
+    setting = precompute_setting(problem)
+    for other in others:
+        assert other.after == first.task
+        assert key_of(setting, other) != key_of(setting, replace(other, after=None))
+        compute_piece(setting, other, known)
+        compute_piece(setting, other, replace(known, postures={}))
+    compute_piece(setting, first, known)
+    own = known.starts(first.pair, problem.holds[1])
+    assert [landscape.universal is own for landscape in sought] == [True, False, True, False, False]
+
+
+def test_starts_of_other_cases_are_those_of_all_but_one(problem: DesignProblem, known: Precomputed) -> None:
+    pair, (low, middle, high) = problem.scene.pair, problem.holds
+    expected = [id(start) for task in (low, high) for start in known.starts(pair, task)]
+    assert sorted(map(id, known.other_starts(pair, middle))) == sorted(expected)

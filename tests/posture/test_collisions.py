@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from types import SimpleNamespace
 
 import casadi as ca
 import numpy as np
@@ -11,7 +13,7 @@ import pytest
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
-from evodesign.collision.clearance import SolidBodies, places_of
+from evodesign.collision.clearance import BodyDistance, SolidBodies, places_of
 from evodesign.collision.pairs import checked_pairs
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, CollisionRules
 from evodesign.collision.scene_bodies import CheckedBodies, SceneBodies
@@ -22,7 +24,7 @@ from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.posture.allocation import EffortWeights
-from evodesign.posture.check import AgentModel
+from evodesign.posture.check import AgentModel, near_bodies
 from evodesign.posture.design_checkers import DesignCheckers
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.person import person_program
@@ -36,15 +38,16 @@ from evodesign.posture.formulations.reach import (
 )
 from evodesign.posture.parting import Parted
 from evodesign.posture.placed_shape import ROUNDING, SHAPE, PlacedShape, placed_shape
-from evodesign.posture.postures import Symmetry
+from evodesign.posture.postures import SYMMETRIC, PostureProblem, Symmetry
 from evodesign.posture.precompute.meetings import _Finder, found_meetings, with_meetings
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
+from evodesign.posture.results import Instant
 from evodesign.posture.separating_axes import ways_of
 from evodesign.posture.solution_derivative import PostureDerivative
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.posture.terms.collisions import NUMBERS, directed, placed_pairs
 from evodesign.problem.build import DesignProblem
-from evodesign.records import Status
+from evodesign.records import Hold, Status
 from evodesign.tree.kinematics import Pose
 from evodesign.tree.model import Link, Look, Tree
 
@@ -342,10 +345,39 @@ def test_postures_in_which_bodies_overlap_are_told(problem: DesignProblem, apart
         assert checkers.of(values) is checker
         residuals = checker.task_residuals(case.instants, case.case.task.heights)
         deep = next(each.size for each in residuals if each.name == "overlap")
-        assert checker.overlaps(case.instants, case.case.task.heights) is (deep > 1e-5)
+        ((*overlaps,),) = [checker.overlaps(case.instants, case.case.task.heights)]
+        assert max((-gap.distance for gap in overlaps[0]), default=0.0) == deep
         told.append(deep > 1e-5)
     assert any(told)
-    assert not DesignCheckers(problem.scene, problem.space).of(values).overlaps(case.instants, (1.0,))
+    assert DesignCheckers(problem.scene, problem.space).of(values).overlaps(case.instants, (1.0,)) == [[]]
+
+
+@pytest.mark.slow
+def test_bodies_that_are_wider_than_their_shapes_are_parted_farther(apart: DesignProblem, met: dict) -> None:
+    """A check to which the chest reaches 0.2 m farther: the hands' rows ask for so much more."""
+    scene, task, wide = with_meetings(apart.scene, met), Hold(height_m=1.0), 0.2
+    problem = PostureProblem(replace(setting_of(apart), scene=scene), Symmetry.ON)
+    values = tuple(apart.space.unscaled(scene.robot.tree))
+    models = [AgentModel.of(agent, agent.tree) for agent in (scene.robot, scene.human)]
+    hands = {(f"{ROBOT} chest", f"{ROBOT} {hand}") for hand in ("l_hand", "r_hand")}
+    asked: list[list[BodyDistance]] = []
+
+    def near(instants: Sequence[Instant], heights: Sequence[float]) -> list[list[BodyDistance]]:
+        ((instant,), (height,)) = instants, heights
+        gaps = near_bodies(models, instant.postures, scene.payload.size, height, wide - 1e-5)
+        own = [gap for gap in gaps if (gap.first, gap.second) in hands]
+        asked.append([replace(gap, distance=gap.distance - wide) for gap in own])
+        return asked[-1:]
+
+    formulation = problem._formulation(SYMMETRIC, task, MethodName.IPOPT)
+    found = problem.landscape(task).solve(values, {})
+    cleared = formulation.cleared(values, found, task, SimpleNamespace(overlaps=near))
+    assert len(asked[0]) == 2
+    assert cleared.status is Status.SOLVED
+    assert asked[-1] == []
+    assert cleared.cost > found.cost + 1e-6
+    always = SimpleNamespace(overlaps=lambda *_: [[replace(asked[0][0], distance=-0.01)]])
+    assert formulation.cleared(values, found, task, always).status is not Status.SOLVED
 
 
 @pytest.mark.slow

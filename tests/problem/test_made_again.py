@@ -63,3 +63,12 @@ def test_heights_that_stay_are_kept_where_bodies_may_pass_through_each_other() -
     again = keys_of(free, ("heights_m = [0.8, 1.0, 1.2]", "heights_m = [0.8, 1.0, 1.1]"))
     choices_and_new_starts = 2 * 3 + 2
     assert len(again - before) <= choices_and_new_starts < len(again)
+
+
+def test_all_starts_are_made_again_where_the_middle_height_changes() -> None:
+    """Those of other heights are sought from its own."""
+    free = ("[collisions]", "# no [collisions]")
+    before = keys_of(free)
+    again = keys_of(free, ("heights_m = [0.8, 1.0, 1.2]", "heights_m = [0.8, 1.1, 1.2]"))
+    people_and_extremes = 2 + 2
+    assert len(again & before) <= people_and_extremes < len(again)

@@ -26,7 +26,7 @@ from evodesign.nlp.solver import RawSolution, Solver, SolverCache
 from evodesign.posture.active_limits import LimitSlopes, priced
 from evodesign.posture.allocation import shared_scene, shared_weights
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, total
-from evodesign.posture.check import Checker
+from evodesign.posture.check import Checker, own_overlaps
 from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.formulations.person import PersonProblem
 from evodesign.posture.load_cases import WorstCase, aggregated
@@ -35,7 +35,7 @@ from evodesign.posture.results import CaseSolution, Instant, Neighbour
 from evodesign.posture.seeking.budget import BUDGET
 from evodesign.posture.seeking.candidate import Candidate, Finishing, Trial, cheapest, checked
 from evodesign.posture.seeking.exchange import Exchange
-from evodesign.posture.seeking.landscape import Landscape
+from evodesign.posture.seeking.landscape import REFUSED, Landscape
 from evodesign.posture.seeking.measured_starts import POSTURE, measured_starts
 from evodesign.posture.seeking.seeker import Seeker
 from evodesign.posture.seeking.starts import different_people, fixed_starts, named_starts, universal_starts
@@ -175,9 +175,26 @@ class JointPostures:
         switches = program.switches
         return frozenset([*own, *(switches.names_of(HUMAN) if isinstance(switches, Parted) else ())])
 
-    def keeps_clear(self, raw: RawSolution, task: Task, checker: Checker) -> bool:
-        """Whether the check finds no bodies that overlap in a solution."""
-        return not checker.overlaps(self._instants(raw, task), task.heights)
+    def cleared(self, design: Sequence[float], raw: RawSolution, task: Task, checker: Checker) -> RawSolution:
+        """What a solution leads to in which the check finds no bodies in each other, or one that failed.
+
+        Where it finds some, their rows ask for as much more as they lack, and the solve goes on.
+        """
+        parameters = {"design": design, **self._beside(task)}
+        switches = self._solver.program.switches
+        for _ in range(BUDGET.rounds):
+            overlaps = checker.overlaps(self._instants(raw, task), task.heights)
+            if not any(overlaps):
+                return raw
+            if not isinstance(switches, Parted):
+                break
+            on = switches.wider(raw.values, parameters, [own_overlaps(gaps) for gaps in overlaps])
+            if not on:
+                break
+            raw = self._seeker.further(parameters, raw, on)
+            if raw.status is not Status.SOLVED:
+                break
+        return replace(raw, status=Status.NUMERICAL_FAILURE, reason=REFUSED)
 
     def solve(
         self, design: Sequence[float], task: Task, portfolio: Sequence[Start], checker: Checker
@@ -338,6 +355,7 @@ class JointPostures:
             lambda raw, last: self._seeker.settled(parameters, raw, gain, patient=last),
             lambda raw, least: self._seeker.bettered(parameters, raw, max(gain, least)),
             lambda start, raw: self._candidate(start, raw, task, checker),
+            lambda raw: self.cleared(parameters["design"], raw, task, checker),
             lambda raw: self._seeker.continued(parameters, raw),
         )
         return cheapest(self.name, ends, finishing)

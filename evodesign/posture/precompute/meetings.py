@@ -7,16 +7,15 @@ in which another pair overlaps is refused by the check.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice, product
 
-from evodesign.collision.clearance import BodyDistance
-from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair, CollisionRules
+from evodesign.collision.rules import BodyPair, CollisionRules
 from evodesign.design.spread import spread_designs
 from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
 from evodesign.nlp.solver import SolverCache
-from evodesign.posture.check import AgentModel, Checker, near_bodies
+from evodesign.posture.check import AgentModel, Checker, near_bodies, own_pairs
 from evodesign.posture.design_checkers import can_be_built
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.joint import JointPostures
@@ -141,21 +140,7 @@ class _Finder:
         """The pairs that are near, with their distances [m]."""
         robot = self._robot.resized(self._setting.space.resized(self.scene.robot.tree, values))
         gaps = near_bodies((robot, self._human), postures, self.scene.payload.size, height, NEAR)
-        return {met: gap.distance for gap in gaps for met in _own_pairs(gap)}
-
-
-def _own_pairs(gap: BodyDistance) -> Iterator[tuple[str, BodyPair]]:
-    """The pair as those see it whom it is of, by agent: who is near the other one keeps to its own side."""
-    agent, _, link = gap.first.partition(" ")
-    if gap.second in (LOAD, FLOOR):
-        yield agent, (link, gap.second)
-        return
-    other, _, second = gap.second.partition(" ")
-    if other == agent:
-        yield agent, (link, second)
-    else:
-        yield agent, (link, PARTNER)
-        yield other, (second, PARTNER)
+        return {met: gap.distance for gap in gaps for met in own_pairs(gap)}
 
 
 def _in_order(agent: Agent, found: set[BodyPair], form: Form) -> list[BodyPair]:

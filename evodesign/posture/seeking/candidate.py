@@ -52,11 +52,25 @@ class Trial:
         attempts: all of them.
         best: the cheapest that the check agrees with.
         overlaps: whether the check refused one for bodies that no row of the program keeps apart.
+        lost: what the cheapest end cost that led nowhere for the bodies in its way; infinite where none did.
     """
 
     attempts: tuple[Attempt, ...]
     best: Candidate | None
     overlaps: bool = False
+    lost: float = np.inf
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether the best may be far from the best there is."""
+        relative, absolute = BUDGET.near
+        return self.best is None or self.best.raw.cost > (1.0 + relative) * self.lost + absolute
+
+    def beside(self, other: Trial) -> Trial:
+        """Both as one."""
+        found = [trial.best for trial in (self, other) if trial.best is not None]
+        best = min(found, key=lambda candidate: candidate.raw.cost, default=None)
+        return Trial((*self.attempts, *other.attempts), best, self.overlaps and best is None)
 
 
 def checked(formulation: str, start: str, raw: RawSolution, residuals: Sequence[Residual]) -> Attempt:
@@ -79,12 +93,14 @@ class Finishing:
             It is told whether no other end is left: where one is, what takes long is given up.
         better: what a solution leads to that may cost less by more than so much.
         finish: makes a candidate of a named solve that succeeded.
+        clear: what a solution leads to whose true bodies are in each other.
         go_on: what a solve that was given up early leads to in as many iterations again; None where none was.
     """
 
     settle: Callable[[RawSolution, bool], RawSolution]
     better: Callable[[RawSolution, float], RawSolution]
     finish: Callable[[str, RawSolution], Candidate]
+    clear: Callable[[RawSolution], RawSolution]
     go_on: Callable[[RawSolution], RawSolution] | None = None
 
 
@@ -103,7 +119,8 @@ def cheapest(formulation: str, ends: Sequence[tuple[str, RawSolution]], finishin
     attempts = [checked(formulation, start, raw, ()) for start, raw in ends]
     left = {place for place, raw in enumerate(raws) if raw.status is Status.SOLVED}
     bound = min((raws[place].cost for place in left), default=np.inf)
-    settled: set[int] = set()
+    promised = [raw.cost for raw in raws]
+    settled, cleared, nowhere = set[int](), set[int](), set[int]()
     overlaps, best = False, None
     while left and best is None:
         place = min(left, key=lambda place: (raws[place].cost, place))
@@ -111,16 +128,24 @@ def cheapest(formulation: str, ends: Sequence[tuple[str, RawSolution]], finishin
             settled.add(place)
             raws[place] = finishing.settle(raws[place], len(left) == 1)
             attempts[place] = checked(formulation, starts[place], raws[place], ())
+            is_left = raws[place].status is Status.SOLVED
         else:
             candidate = finishing.finish(starts[place], raws[place])
             attempts[place] = candidate.attempt
-            overlaps = overlaps or candidate.overlaps
-            left.remove(place)
             best = candidate if candidate.solved else None
-        if raws[place].status is not Status.SOLVED:
-            left.discard(place)
+            apart = finishing.clear(raws[place]) if candidate.overlaps and place not in cleared else None
+            is_left = apart is not None and apart.status is Status.SOLVED
+            if apart is not None and is_left:
+                cleared.add(place)
+                raws[place] = apart
+            overlaps = overlaps or (candidate.overlaps and not is_left)
+        if not is_left:
+            left.remove(place)
+        if not is_left and best is None:
+            nowhere.add(place)
+    lost = min((promised[place] for place in nowhere), default=np.inf)
     if best is None:
-        return Trial(tuple(attempts), None, overlaps)
+        return Trial(tuple(attempts), None, overlaps, lost)
     go_on = finishing.go_on
     given_up = {place for place, raw in enumerate(raws) if go_on and raw.status is Status.ITERATION_LIMIT}
     for place in _each_once([raw.cost for raw in raws], (left - settled) | given_up):
@@ -134,9 +159,13 @@ def cheapest(formulation: str, ends: Sequence[tuple[str, RawSolution]], finishin
             found = finishing.better(raw, raw.cost - best.raw.cost)
         if found.status is Status.SOLVED and found.cost < best.raw.cost:
             candidate = finishing.finish(starts[place], found)
+            if candidate.overlaps:
+                apart = finishing.clear(found)
+                if apart.status is Status.SOLVED and apart.cost < best.raw.cost:
+                    candidate = finishing.finish(starts[place], apart)
             attempts[place] = candidate.attempt
             best = candidate if candidate.solved else best
-    return Trial(tuple(attempts), best)
+    return Trial(tuple(attempts), best, lost=lost)
 
 
 def _each_once(costs: Sequence[float], places: Collection[int]) -> list[int]:

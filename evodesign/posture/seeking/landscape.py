@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -90,7 +90,7 @@ class Landscape:
         relative, absolute: how far above the best optimum another one is still good, as a share of its cost
             and in the cost's unit.
         begun: where a solve begins for a start and the parameters; left out, at the start as it is.
-        accepted: whether a solution of a design counts; left out, each does.
+        cleared: what a solution of a design leads to that counts, or one that failed; left out, each does.
         universal: starts all over the program's variables, from which optima are sought.
         known: parts of starts that are known beforehand; each drawn start has one of them.
     """
@@ -101,7 +101,7 @@ class Landscape:
     relative: float
     absolute: float
     begun: Callable[[Start, Mapping[str, Any]], Start] | None = None
-    accepted: Callable[[Design, RawSolution], bool] | None = None
+    cleared: Callable[[Design, RawSolution], RawSolution] | None = None
     universal: tuple[Start, ...] = ()
     known: tuple[Start, ...] = ()
 
@@ -123,9 +123,9 @@ class Landscape:
     def finished(self, design: Design, end: RawSolution) -> RawSolution:
         """The same with bodies parted in better ways; one that does not count has failed."""
         found = self.seeker.bettered({"design": design, **self.beside}, end, 0.0)
-        if found.status is Status.SOLVED and self.accepted is not None and not self.accepted(design, found):
-            return replace(found, status=Status.NUMERICAL_FAILURE, reason=REFUSED)
-        return found
+        if found.status is not Status.SOLVED or self.cleared is None:
+            return found
+        return self.cleared(design, found)
 
     def good(self, costs: Costs, best: Costs) -> NDArray[np.bool_]:
         """Which costs are close enough to the best ones."""

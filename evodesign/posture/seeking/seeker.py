@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from evodesign.nlp.program import Array, Program, Start, Switches
 from evodesign.nlp.solver import RawSolution, Solver, has_any
 from evodesign.posture.seeking import settling
@@ -52,6 +54,11 @@ class Seeker:
             self.solver.solve(parameters, start) if raw.status is Status.ITERATION_LIMIT else raw
             for start, raw in zip(starts, ends, strict=True)
         ]
+
+    def further(self, parameters: Parameters, raw: RawSolution, on: Start) -> RawSolution:
+        """What a solution leads to with other rows on, and those that it then violates."""
+        found = self.solver.solve(parameters, {**raw.values, **on})
+        return self.settled(parameters, _after(raw, found), np.inf)
 
     def continued(self, parameters: Parameters, raw: RawSolution) -> RawSolution:
         """What a solve that was given up leads to when it has as long again."""

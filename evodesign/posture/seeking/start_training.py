@@ -3,8 +3,8 @@
 Random starts hardly ever lead to the best of dozens of optima; optima of other designs do. Some quasi-random
 designs are solved from the landscape's universal starts and from a few random ones. Then the best optimum of
 a design that no start serves is offered to all designs, until each is served: a start serves a design if the
-solver converges from it to within 1 % of the best optimum that any start led to. Of the offers those are kept that serve all together with
-little work. The same landscape always gets the same portfolio.
+solver converges from it to within 1 % of the best optimum that any start led to. Of the offers those are kept
+that serve all together with little work. The same landscape always gets the same portfolio.
 
 Source: greedy cover: Johnson 1974.
 """

@@ -14,7 +14,7 @@ side everyone stays; and in symmetric postures the middle plane, between a link 
 
 From a poor start such rows lead to poor optima: a head stays on the wrong side of the load. So those with a
 direction are off at first, by 10 m added to them; where a solution overlaps, its rows are switched on, and
-the solve goes on from there.
+the solve goes on from there. Where shapes are narrower than the true bodies, their rows ask for more.
 
 Corners of the supports are rounded off outwards, |x| <= sqrt(x^2 + e^2), so a posture that fulfils the rows
 is one in which the bodies are apart.
@@ -54,8 +54,9 @@ from evodesign.tree.kinematics import Expression, Pose, pose_from
 from evodesign.tree.mirror_pairs import Mirror
 from evodesign.tree.model import Tree
 
-PARTING, NUMBERS = "parting", 7
-"""What an agent holds of the directions that part its bodies: on, a and b of each."""
+PARTING, NUMBERS = "parting", 8
+"""What an agent holds of the directions that part its bodies: on, a and b of each, and how much more than the
+margin [m] its rows ask for, where the true bodies are wider than their shapes in programs."""
 
 CLEAR = "clear"
 """Rows along directions."""
@@ -121,6 +122,11 @@ def _meeting(mirror: Mirror | None, kept: Collection[str], pair: BodyPair) -> Me
         return Meeting(MeetingKind.MIDDLE, first, first, True)
     one, other = sorted((first, mirror.links[second]))  # mirror images of this pair are another name of it
     return Meeting(MeetingKind.DIRECTION, one, other, True)
+
+
+def meeting_of(form: Form, pair: BodyPair) -> Meeting:
+    """The meeting of a pair of bodies in a form."""
+    return _meeting(form.mirror, form.part(form.agent.tree)[0].link_by_name, pair)
 
 
 def margin_of(form: Form, meeting: Meeting) -> float:
@@ -219,7 +225,7 @@ def rows(body: Body) -> Iterator[Row]:
             place = NUMBERS * parted.index(meeting)
             numbers, pairs = body.values[PARTING][place : place + NUMBERS], placed_pairs(body, meeting)
             for one, other in pairs:
-                apart = one.apart_along(other, numbers) + OFF * (1.0 - numbers[0]) + spare
+                apart = one.apart_along(other, numbers) + OFF * (1.0 - numbers[0]) + spare - numbers[7]
                 found[MeetingKind.DIRECTION].append((meeting.label, apart, margin))
     for kind, name, share in (
         (MeetingKind.MIDDLE, "clear_of_mirror_image", 1.0),

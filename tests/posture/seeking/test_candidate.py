@@ -7,16 +7,24 @@ from dataclasses import replace
 import numpy as np
 
 from evodesign.nlp.solver import Multipliers, RawSolution
+from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.seeking.budget import BUDGET
 from evodesign.posture.seeking.candidate import Candidate, Finishing, Trial, cheapest, checked
+from evodesign.posture.terms.base import Residual
 from evodesign.records import Status
 
 NOTHING = np.zeros(0)
+OVERLAP = Residual("overlap", 0.01, "m", "shank and thigh apart", LimitGroup.COLLISIONS, posture_only=True)
 
 
 def ended(cost: float, status: Status = Status.SOLVED) -> RawSolution:
     multipliers = Multipliers(NOTHING, NOTHING)
     return RawSolution({}, status, "", 1, 0.0, cost, NOTHING, multipliers)
+
+
+def ended_at(raw: RawSolution, cost: float) -> RawSolution:
+    failed = Status.SOLVED if np.isfinite(cost) else Status.ITERATION_LIMIT
+    return replace(raw, cost=cost, status=failed)
 
 
 class Asked:
@@ -25,7 +33,9 @@ class Asked:
     Args:
         costs: of the better solves, by cost.
         refused: costs of what the check refuses.
-        settled: what solves cost that are settled, by cost.
+        settled: what solves cost that are settled, by cost; infinite for those that fail.
+        apart: costs of solves in which the check finds bodies in each other, with what they cost when these
+            are apart; infinite where they cannot be.
     """
 
     def __init__(
@@ -33,22 +43,24 @@ class Asked:
         costs: dict[float, float],
         refused: tuple[float, ...] = (),
         settled: dict[float, float] | None = None,
+        apart: dict[float, float] | None = None,
     ) -> None:
         self.asked: list[tuple[float, float]] = []
         self.settled: list[float] = []
         self.patient: list[bool] = []
         self.gone_on: list[float] = []
-        self._costs, self._refused, self._settled = costs, refused, settled or {}
+        self.cleared: list[float] = []
+        self._costs, self._refused, self._settled, self._apart = costs, refused, settled or {}, apart or {}
 
     def trial(self, *costs: float) -> Trial:
         ends = [(f"start {number}", ended(cost)) for number, cost in enumerate(costs, 1)]
-        return cheapest("joint", ends, Finishing(self.settle, self.better, self.finish))
+        return cheapest("joint", ends, Finishing(self.settle, self.better, self.finish, self.clear))
 
     def trial_with_given_up(self, solved: float, *given_up: float, early: bool = True) -> Trial:
         ends = [("start 0", ended(solved))]
         ends += [(f"start {n}", ended(cost, Status.ITERATION_LIMIT)) for n, cost in enumerate(given_up, 1)]
         go_on = self.go_on if early else None
-        return cheapest("joint", ends, Finishing(self.settle, self.better, self.finish, go_on))
+        return cheapest("joint", ends, Finishing(self.settle, self.better, self.finish, self.clear, go_on))
 
     def go_on(self, raw: RawSolution) -> RawSolution:
         self.gone_on.append(raw.cost)
@@ -57,7 +69,11 @@ class Asked:
     def settle(self, raw: RawSolution, last: bool) -> RawSolution:
         self.settled.append(raw.cost)
         self.patient.append(last)
-        return replace(raw, cost=self._settled.get(raw.cost, raw.cost))
+        return ended_at(raw, self._settled.get(raw.cost, raw.cost))
+
+    def clear(self, raw: RawSolution) -> RawSolution:
+        self.cleared.append(raw.cost)
+        return ended_at(raw, self._apart[raw.cost])
 
     def better(self, raw: RawSolution, least: float) -> RawSolution:
         self.asked.append((raw.cost, round(least, 9)))
@@ -67,7 +83,10 @@ class Asked:
         attempt = checked("joint", start, raw, ())
         if raw.cost in self._refused:
             attempt = replace(attempt, status=Status.NUMERICAL_FAILURE)
-        return Candidate(attempt, (), (), raw)
+        residuals = (OVERLAP,) if raw.cost in self._apart else ()
+        if residuals:
+            attempt = checked("joint", start, raw, residuals)
+        return Candidate(attempt, (), residuals, raw)
 
 
 def best_of(trial: Trial) -> tuple[str, float]:
@@ -141,3 +160,37 @@ def test_nothing_goes_on_where_no_solve_was_given_up_early() -> None:
     asked = Asked({95.0: 96.0})
     assert best_of(asked.trial_with_given_up(100.0, 95.0, early=False)) == ("start 0", 100.0)
     assert asked.gone_on == []
+
+
+def test_what_the_check_refuses_for_its_bodies_goes_on_with_them_apart() -> None:
+    """Once each; it counts at what it costs then, which may be more than another one does."""
+    asked = Asked({}, apart={10.0: 10.1})
+    assert best_of(asked.trial(10.0, 12.0)) == ("start 1", 10.1)
+    dearer = Asked({}, apart={10.0: 11.0})
+    assert best_of(dearer.trial(10.0, 10.5)) == ("start 2", 10.5)
+    again = Asked({}, apart={10.0: 10.1, 10.1: 10.2})
+    trial = again.trial(10.0)
+    assert (trial.best, trial.overlaps, again.cleared) == (None, True, [10.0])
+    better = Asked({10.5: 9.0}, apart={9.0: 9.5})
+    assert best_of(better.trial(10.0, 10.5)) == ("start 2", 9.5)
+    worse = Asked({10.5: 9.0}, apart={9.0: 10.2})
+    assert best_of(worse.trial(10.0, 10.5)) == ("start 1", 10.0)
+
+
+def test_a_trial_is_doubtful_where_an_end_that_promised_less_led_nowhere() -> None:
+    assert not Asked({}).trial(10.0, 12.0).is_doubtful
+    assert not Asked({}, settled={10.0: 11.0}).trial(10.0, 12.0).is_doubtful, "rows cost what they cost"
+    assert Asked({}, settled={10.0: np.inf}).trial(10.0, 12.0).is_doubtful
+    assert not Asked({}, settled={10.0: np.inf}).trial(10.0, 10.05).is_doubtful, "within 1 %"
+    assert Asked({}, apart={10.0: np.inf}).trial(10.0, 12.0).is_doubtful
+    assert Asked({}, settled={10.0: np.inf}).trial(10.0).is_doubtful, "there is none"
+
+
+def test_two_trials_are_one_with_the_best_of_both() -> None:
+    one, other = Asked({}).trial(10.0), Asked({}).trial(9.0)
+    assert best_of(one.beside(other)) == best_of(other.beside(one)) == ("start 1", 9.0)
+    assert len(one.beside(other).attempts) == 2
+    none = Asked({}, apart={10.0: np.inf}).trial(10.0)
+    assert best_of(none.beside(other)) == ("start 1", 9.0)
+    assert not none.beside(other).overlaps
+    assert none.beside(Asked({}, refused=(10.0,)).trial(10.0)).overlaps
