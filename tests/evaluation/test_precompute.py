@@ -13,8 +13,8 @@ from evodesign.evaluation.precompute import precompute_setting, precomputed, sta
 from evodesign.evaluation.progress import PrecomputeProgress
 from evodesign.nlp.disk_cache import Cache, user_cache
 from evodesign.pool.base import Finished, Pool
-from evodesign.posture.precompute.keys import key_of
 from evodesign.posture.precompute import pieces
+from evodesign.posture.precompute.keys import key_of
 from evodesign.posture.precompute.pieces import compute_piece
 from evodesign.posture.precompute.plan import Piece, Subject
 from evodesign.posture.precompute.precomputed import NO_STARTS, Precomputed
