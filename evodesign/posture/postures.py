@@ -229,14 +229,20 @@ class PostureProblem:
         portfolio: Sequence[Start],
         checker: Checker,
     ) -> Trial:
-        """What the portfolio, or the fixed starts, lead to; that of the latest design is at hand."""
+        """What the portfolio, or the fixed starts, lead to; that of the latest design is at hand.
+
+        Where that is doubtful, the starts of others in the same task are tried; where it is nothing, those of
+        all other tasks.
+        """
         key, of = (formulation, task, bool(portfolio)), (tuple(design), type(checker))
         found = self._latest.get(key)
         if found is None or found[0] != of:
             trial = formulation.solve(design, task, portfolio, checker)
-            others = self._known.other_starts(self._setting.scene.pair, task) if portfolio else ()
-            if trial.is_doubtful and others:
-                trial = trial.beside(formulation.solve(design, task, others, checker))
+            beside, rest = self._known.other_starts(self._setting.scene.pair, task)
+            if portfolio and beside and trial.is_doubtful:
+                trial = trial.beside(formulation.solve(design, task, beside, checker))
+            if portfolio and rest and trial.best is None:
+                trial = trial.beside(formulation.solve(design, task, rest, checker))
             found = of, trial
             self._latest[key] = found
         return found[1]

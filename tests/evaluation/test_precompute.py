@@ -87,7 +87,7 @@ def test_all_pieces_are_told_before_the_first_is_worked_out(
 def test_starts_of_other_heights_are_sought_from_those_of_the_middle_one(
     problem: DesignProblem, known: Precomputed, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The middle one is worked out before; where it has no starts, others are sought all over, as its own are."""
+    """The middle one is worked out before; where it has no starts, others are sought all over."""
     sought: list[Landscape] = []
 
     def portfolio(landscape: Landscape, designs: object) -> StartPortfolio:
@@ -114,4 +114,8 @@ def test_starts_of_other_heights_are_sought_from_those_of_the_middle_one(
 def test_starts_of_other_cases_are_those_of_all_but_one(problem: DesignProblem, known: Precomputed) -> None:
     pair, (low, middle, high) = problem.scene.pair, problem.holds
     expected = [id(start) for task in (low, high) for start in known.starts(pair, task)]
-    assert sorted(map(id, known.other_starts(pair, middle))) == sorted(expected)
+    beside, rest = known.other_starts(pair, middle)
+    assert (beside, sorted(map(id, rest))) == ((), sorted(expected))
+    someone = ("someone", pair[1])
+    beside, rest = known.other_starts(someone, middle)
+    assert (beside, sorted(map(id, rest))) == (known.starts(pair, middle), sorted(expected))

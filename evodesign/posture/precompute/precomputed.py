@@ -72,10 +72,16 @@ class Precomputed:
             start for other, found in self.postures.items() if other.task == task for start in found.starts
         )
 
-    def other_starts(self, pair: tuple[str, str], task: Task) -> tuple[Start, ...]:
-        """The posture problem's starts in all other cases."""
-        own = Case(person=pair[0], payload=pair[1], task=task)
-        return tuple(start for case, found in self.postures.items() if case != own for start in found.starts)
+    def other_starts(self, pair: tuple[str, str], task: Task) -> tuple[tuple[Start, ...], tuple[Start, ...]]:
+        """The posture problem's starts of others in the same task, and those of other tasks."""
+        beside: list[Start] = []
+        rest: list[Start] = []
+        for case, found in self.postures.items():
+            if case.task != task:
+                rest += found.starts
+            elif (case.person, case.payload) != pair:
+                beside += found.starts
+        return tuple(beside), tuple(rest)
 
     def designs_for(self, task: Task | None) -> list[Design]:
         """The designs to learn from that hold a load at all heights of a task; all of them without one."""
