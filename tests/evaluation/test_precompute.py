@@ -20,6 +20,7 @@ from evodesign.posture.precompute.plan import Piece, Subject
 from evodesign.posture.precompute.precomputed import NO_STARTS, Precomputed
 from evodesign.posture.seeking.landscape import Landscape
 from evodesign.posture.seeking.start_portfolio import StartPortfolio
+from evodesign.posture.seeking.start_training import USUAL, Training
 from evodesign.problem.build import DesignProblem
 
 
@@ -88,9 +89,10 @@ def test_starts_of_other_heights_are_sought_from_those_of_the_middle_one(
     problem: DesignProblem, known: Precomputed, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The middle one is worked out before; where it has no starts, others are sought all over."""
-    sought: list[Landscape] = []
+    own, sought = known.starts(problem.scene.pair, problem.holds[1]), list[Landscape]()
 
-    def portfolio(landscape: Landscape, designs: object) -> StartPortfolio:
+    def portfolio(landscape: Landscape, designs: object, training: Training = USUAL) -> StartPortfolio:
+        assert (training.random == 0) is (landscape.universal is own)
         sought.append(landscape)
         return NO_STARTS
 
@@ -107,7 +109,6 @@ def test_starts_of_other_heights_are_sought_from_those_of_the_middle_one(
         compute_piece(setting, other, known)
         compute_piece(setting, other, replace(known, postures={}))
     compute_piece(setting, first, known)
-    own = known.starts(first.pair, problem.holds[1])
     assert [landscape.universal is own for landscape in sought] == [True, False, True, False, False]
 
 
