@@ -147,6 +147,4 @@ def _portfolio(
     problem = PostureProblem(own, setting.symmetry, known, solvers)
     landscape = problem.landscape(task, checker_of)
     near = known.starts(piece.pair, piece.after) if piece.after else ()
-    if near:
-        return start_portfolio(replace(landscape, universal=near), designs, replace(USUAL, random=0))
-    return start_portfolio(landscape, designs)
+    return start_portfolio(replace(landscape, universal=near or landscape.universal), designs)
