@@ -299,6 +299,8 @@ class Meetings:
             wanted: new numbers for one of them, from the ways to part it, its place, and how far it is apart
                 along its direction [m]; or None.
         """
+        if not len(self.margins):
+            return {}
         pairs = self._pairs(at)
         seen = self._screened(pairs, held)
         places = np.flatnonzero(looked_at(seen)).tolist()
@@ -348,7 +350,7 @@ def meetings_of(
     column = ca.densify(ca.horzcat(ca.SX(2 * SHAPE, 0), *numbers))
     return Meetings(
         BufferedFunction(ca.Function("shapes", list(arguments), [column], {"cse": True})),
-        BufferedFunction(_screen().map(len(pairs))),
+        BufferedFunction(_screen().map(max(len(pairs), 1))),
         np.array(places, np.intp),
         np.searchsorted(places, np.arange(len(margins))),
         rows_of(bodies, constraints),

@@ -449,7 +449,7 @@ def test_another_way_is_worth_what_the_rows_it_relaxes_cost(apart: DesignProblem
     (name,) = switches.names
     costs = []
     for loosened in (-1e-4, 1e-4):  # by less or more than the 10 m that switch a row off
-        held = np.array(best.values[name]).reshape(-1, 7)
+        held = np.array(best.values[name]).reshape(-1, NUMBERS)
         held[held[:, 0] != 0.0, 0] -= loosened / 10.0
         costs.append(reach._solver.solve(parameters, {**best.values, name: held.ravel()}).cost)
     assert prices.sum() > 0.1
