@@ -249,6 +249,8 @@ class Meetings:
             held: numbers of each meeting.
             deep: how deep the bodies of some meetings are in each other [m], by place.
         """
+        if not deep:
+            return {}
         pairs = self._pairs(at)
         along, found = self._screened(pairs, held).along, dict[int, Array]()
         for place, depth in deep.items():
@@ -271,8 +273,7 @@ class Meetings:
         gains: list[float] = []
 
         def looked_at(seen: _Screened) -> NDArray[np.bool_]:
-            held_in_touch = (prices > 0.0) & (seen.along <= seen.margins + TOUCHING)
-            return np.asarray(seen.on & held_in_touch)
+            return np.asarray(seen.on & (prices > 0.0) & (seen.along <= seen.margins + TOUCHING))
 
         def wanted(ways: Ways, place: int, along: float) -> Array | None:
             farther = ways.distance - along

@@ -483,6 +483,9 @@ def test_signs_are_those_of_coal_in_random_postures(name: str, apart: DesignProb
         )
         pairs = meetings.shapes(*numbers)[0].reshape(-1, 2, SHAPE)
         ways = ways_of([pairs[meetings.places == place] for place in range(len(labels))])
+        least = meetings._screened(pairs, np.zeros((len(labels), NUMBERS))).least
+        assert np.all(least <= np.array([way.distance for way in ways]) + 1e-9)
+        assert np.all(least > -1.0)
         parts = {part.partition(".")[2]: value for part, value in values.items()}
         poses = {name: (agent.sign, model.at(form.expand(parts)).poses)}
         gaps = {

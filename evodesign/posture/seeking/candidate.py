@@ -158,14 +158,19 @@ def cheapest(formulation: str, ends: Sequence[tuple[str, RawSolution]], finishin
         elif BUDGET.same * best.raw.cost < raw.cost - best.raw.cost <= BUDGET.may_gain * best.raw.cost:
             found = finishing.better(raw, raw.cost - best.raw.cost)
         if found.status is Status.SOLVED and found.cost < best.raw.cost:
-            candidate = finishing.finish(starts[place], found)
-            if candidate.overlaps:
-                apart = finishing.clear(found)
-                if apart.status is Status.SOLVED and apart.cost < best.raw.cost:
-                    candidate = finishing.finish(starts[place], apart)
+            candidate = _finished(starts[place], found, finishing, best.raw.cost)
             attempts[place] = candidate.attempt
             best = candidate if candidate.solved else best
     return Trial(tuple(attempts), best, lost=lost)
+
+
+def _finished(start: str, raw: RawSolution, finishing: Finishing, most: float) -> Candidate:
+    """A solve finished; bodies that the check finds in each other are apart if that costs less than `most`."""
+    candidate = finishing.finish(start, raw)
+    apart = finishing.clear(raw) if candidate.overlaps else raw
+    if apart is raw or apart.status is not Status.SOLVED or apart.cost >= most:
+        return candidate
+    return finishing.finish(start, apart)
 
 
 def _each_once(costs: Sequence[float], places: Collection[int]) -> list[int]:
