@@ -165,7 +165,7 @@ def cheapest(formulation: str, ends: Sequence[tuple[str, RawSolution]], finishin
 
 
 def _finished(start: str, raw: RawSolution, finishing: Finishing, most: float) -> Candidate:
-    """A solve finished; bodies that the check finds in each other are apart if that costs less than `most`."""
+    """A solve finished; bodies that the check finds in each other are parted if that costs less than most."""
     candidate = finishing.finish(start, raw)
     apart = finishing.clear(raw) if candidate.overlaps else raw
     if apart is raw or apart.status is not Status.SOLVED or apart.cost >= most:
