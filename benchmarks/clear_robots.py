@@ -70,7 +70,7 @@ def measured(urdf: Path, folder: Path, *, fixed_starts: bool = False) -> dict[st
         evaluator = Evaluator(apart, cached_precomputed(apart, pool))
     prepared = processor_seconds()
     result, free = solved(evaluator), free_of(problem)
-    agents = {agent.name: agent.collisions for agent in (apart.scene.robot, apart.scene.human)}
+    agents = {agent.name: agent.collisions for agent in apart.scene.agents}
     return {
         "checked": {who: len(rules.checked) if rules else 0 for who, rules in agents.items()},
         "with_rows": {

@@ -133,9 +133,9 @@ def _without_rows(scene: Scene) -> Scene:
     """The scene with bodies that are checked and that no row parts."""
     robot, human = (
         replace(agent, collisions=agent.collisions and replace(agent.collisions, parted=()))
-        for agent in (scene.robot, scene.human)
+        for agent in scene.agents
     )
-    return replace(scene, robot=robot, human=human)
+    return scene.with_agents(robot, human)
 
 
 def lifts(

@@ -17,7 +17,7 @@ import numpy as np
 
 from evodesign.human.measured_posture import HumanPosture
 from evodesign.human.population import population
-from evodesign.mechanics.scene import ROBOT, Payload, Scene
+from evodesign.mechanics.scene import ROBOT, Payload, Role, Scene
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.solver import RawSolution, SolverCache
 from evodesign.posture.formulations.person import PersonProblem
@@ -37,7 +37,9 @@ def costs_of_hold(rng: np.random.Generator, starts: int) -> tuple[RawSolution, A
     (person,) = population(SEXES[int(rng.integers(2))], [percentile]).values()
     form = half(agent_of(person, HumanPosture.MEASURED))
     load, height, push = rng.uniform(2.5, 10.0), rng.uniform(0.3, 1.4), rng.uniform(-5.0, 5.0)
-    scene = Scene(replace(form.agent, name=ROBOT), form.agent, Payload(LARGE, 2.0 * load))
+    scene = Scene(
+        (replace(form.agent, name=ROBOT, role=Role.ROBOT, quarters=0), form.agent), Payload(LARGE, 2.0 * load)
+    )
     problem = PersonProblem(form, scene, 1.0, SolverOptions(compiled=False), SolverCache())
 
     def led(start: dict[str, Array]) -> RawSolution:

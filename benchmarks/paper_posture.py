@@ -74,7 +74,7 @@ class PaperPostures:
 
     def residual(self, raw: RawSolution, values: Sequence[float], height: float) -> float:
         """The largest residual (SI units) that the independent check finds in a solution."""
-        agents = (self._scene.robot, self._scene.human)
+        agents = self._scene.agents
         own = {a.name: {part: raw.values[f"{a.name}.{part}"] for part in POSTURE} for a in agents}
         columns = [np.concatenate(list(own[agent.name].values())) for agent in agents]
         found = Statics(*[np.array(part).ravel() for part in self._statics(*columns, [*values, height])])

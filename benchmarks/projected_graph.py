@@ -144,7 +144,7 @@ def _load(scene: Scene) -> _Body:
     tree = Tree(PAYLOAD, (Link(PAYLOAD, own_inertia=payload.inertia),), ())
     pose = Pose(ca.DM.eye(3), ca.DM.zeros(3))
     free = ca.SX.sym("f", 2 * len(SIDES) * hand)
-    places = [(agent, side) for agent in (scene.robot, scene.human) for side in SIDES]
+    places = [(agent, side) for agent in scene.agents for side in SIDES]
     applied = [
         _on_load(payload, agent, side, hand_wrench(wrench))
         for (agent, side), wrench in zip(places, ca.vertsplit(free, hand), strict=True)
@@ -156,7 +156,7 @@ def _load(scene: Scene) -> _Body:
 
 def _on_load(payload: Payload, agent: Agent, side: str, wrench: Expression) -> AppliedWrench:
     """The reaction to a hand's wrench, in the world."""
-    turn = ca.diag(ca.DM([agent.sign, agent.sign, 1.0]))
+    turn = ca.DM(agent.turn)
     point = turn @ vector(payload.grasp_point(agent, side))
     return AppliedWrench(PAYLOAD, point, -turn @ wrench[:3], -turn @ wrench[3:])
 

@@ -168,14 +168,23 @@ def key(scene: Scene) -> str:
 def test_every_field_of_a_scene_counts_in_the_key_of_its_programs(problem: str) -> None:
     setting = setting_of(problem)
     scene = setting.middle
-    see_every_field_count(scene, NO_PART_OF_PROGRAMS, key)
-    with_both = {kind: names for kind, names in NO_PART_OF_PROGRAMS.items() if kind is not Scene}
-    seen = see_every_field_count(scene, with_both, lambda s: program_key("joint", s, s.robot, s.human))
+    with_all = {kind: names for kind, names in NO_PART_OF_PROGRAMS.items() if kind is not Scene}
+    see_every_field_count(scene.only(), with_all, key)
+    seen = see_every_field_count(scene, with_all, lambda s: program_key("joint", s, *s.agents))
     assert {"Scene", "Payload", "Agent", "Tree", "Link", "Joint", "StanceLimits", "Ground"} <= seen
 
 
-def test_a_field_that_a_key_ignores_is_found() -> None:
+def test_who_has_no_body_in_a_program_counts_by_the_place() -> None:
     scene = setting_of("shared_lifting").scenes[0]
+    robot, person = scene.agents
+    before = program_key("reach", scene, robot)
+    other = scene.with_agents(replace(person, tree=robot.tree))
+    aside = scene.with_agents(replace(person, quarters=1))
+    assert program_key("reach", other, robot) == before != program_key("reach", aside, robot)
+
+
+def test_a_field_that_a_key_ignores_is_found() -> None:
+    scene = setting_of("shared_lifting").scenes[0].only()
     without = {kind: names for kind, names in NO_PART_OF_PROGRAMS.items() if kind is not Payload}
     with pytest.raises(AssertionError, match=r"Scene\.payload\.mass: 11\.0"):
         see_every_field_count(scene, without, key)

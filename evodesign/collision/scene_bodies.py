@@ -82,22 +82,22 @@ class SceneBodies:
         self._above_floor = np.concatenate(low)
 
     def near(
-        self, poses: Mapping[str, tuple[float, PosesOf]], load_height: float, within: float = 0.0
+        self, poses: Mapping[str, tuple[Array, PosesOf]], load_height: float, within: float = 0.0
     ) -> list[BodyDistance]:
         """Bodies that must not overlap and are nearer to each other than a distance.
 
         Args:
-            poses: of each agent by name: the cosine of the direction in which it looks (1 or -1), and
-                the poses of its links in its own frame.
+            poses: of each agent by name: the rotation that takes its frame to the world, and the poses of its
+                links in its own frame.
             load_height: of the load's centre [m].
             within: the distance [m].
         """
         turns, origins = [], []
-        for name, (sign, of) in poses.items():
+        for name, (turn, of) in poses.items():
             links, places = self._links[name]
-            found = of(links).reshape(-1, 4, 4)[places] * np.array([sign, sign, 1.0, 1.0])[:, None]
-            turns.append(found[:, :3, :3])
-            origins.append(found[:, :3, 3])
+            found = of(links).reshape(-1, 4, 4)[places]
+            turns.append(turn @ found[:, :3, :3])
+            origins.append(found[:, :3, 3] @ turn.T)
         turns.append(np.eye(3)[None])
         origins.append(np.array([[0.0, 0.0, load_height]]))
         placed = self._bodies.placed_at(np.concatenate(turns), np.concatenate(origins))

@@ -81,7 +81,7 @@ class Clearances:
         links = {ROBOT: dict.fromkeys(robot.names), HUMAN: dict.fromkeys(person.names)}
         for one in links[ROBOT]:
             yield from ((_name(ROBOT, one), _name(HUMAN, other)) for other in links[HUMAN])
-        for agent in (scene.robot, scene.human):
+        for agent in scene.agents:
             for link, other in self._of_agent(agent):
                 if other == LOAD:
                     yield _name(agent.name, link), LOAD

@@ -90,7 +90,7 @@ def _ends(problem: DesignProblem) -> list[tuple[float, float] | None]:
     scenes, robot = problem.scenes, problem.scene.robot
     frames = (*robot.hands.values(), *robot.soles.values(), *robot.trunk)
     bare = replace(robot, tree=without_frames(robot.tree, frames))
-    alone = replace(problem, scenes=tuple(replace(scene, robot=bare) for scene in scenes), whole_reach=True)
+    alone = replace(problem, scenes=tuple(scene.with_agents(bare) for scene in scenes), whole_reach=True)
     unscaled = problem.space.unscaled(robot.tree)
     symmetric = problem.symmetry is not Symmetry.OFF
     reaches = [each.solve(unscaled) for each in inner_problems(alone).reaches.values()]

@@ -25,7 +25,7 @@ import numpy as np
 import scipy
 
 from evodesign.mechanics.floating_base import ROOT, Array, BodyState, Configuration, FloatingBody
-from evodesign.mechanics.scene import SIDES, Agent, Grasp, Scene
+from evodesign.mechanics.scene import SIDES, Agent, Grasp, Role, Scene
 from evodesign.tree.model import Tree
 
 PAYLOAD = "payload"
@@ -94,16 +94,19 @@ class CoupledModel:
             scene: agents and load.
             robot_tree: the design's robot, numbers only.
         """
-        robot, human = self._agents = (scene.robot, scene.human)
         self._hand_rows = 6 if scene.payload.grasp is Grasp.RIGID else 3
+        self._agents = scene.agents
+        trees = [(agent, robot_tree if agent.role is Role.ROBOT else agent.tree) for agent in self._agents]
         grasps = {
             _grasp(agent, side): _world_from_agent(agent) @ np.array(scene.payload.grasp_point(agent, side))
             for agent in self._agents
             for side in SIDES
         }
         self._bodies = {
-            robot.name: FloatingBody.of_tree(robot_tree, robot.joints, _world_from_agent(robot)),
-            human.name: FloatingBody.of_tree(human.tree, human.joints, _world_from_agent(human)),
+            **{
+                agent.name: FloatingBody.of_tree(tree, agent.joints, _world_from_agent(agent))
+                for agent, tree in trees
+            },
             PAYLOAD: FloatingBody.of_solid(scene.payload.inertia, grasps),
         }
 
@@ -163,7 +166,7 @@ def _grasp(agent: Agent, side: str) -> str:
 
 def _world_from_agent(agent: Agent) -> Array:
     """Rotation from the agent's frame to the world."""
-    return np.diag([agent.sign, agent.sign, 1.0])
+    return agent.turn
 
 
 def _selector(body: FloatingBody) -> Array:

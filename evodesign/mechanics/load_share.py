@@ -27,7 +27,7 @@ def share_interval(scene: Scene) -> tuple[float, float]:
     payload = scene.payload
     weight = payload.mass * GRAVITY
     largest = 0.0 if payload.grasp is Grasp.POINT else payload.hand_moment
-    hands = [(agent, side) for agent in (scene.robot, scene.human) for side in SIDES]
+    hands = [(agent, side) for agent in scene.agents for side in SIDES]
     balance = np.hstack([_on_load(scene, agent, side) for agent, side in hands])
     loaded = weight * np.array([0.0, 0.0, 1.0, *np.cross(payload.center_of_mass, [0.0, 0.0, 1.0])])
     carried, push = (_of_robot(hands, row) for row in (2, 0))
@@ -50,8 +50,7 @@ def share_interval(scene: Scene) -> tuple[float, float]:
 
 def _on_load(scene: Scene, agent: Agent, side: str) -> Array:
     """Force and moment on the load (world, box's centre) of a hand's force and moment, shape (6, 6)."""
-    x, y, z = scene.payload.grasp_point(agent, side)
-    x, y = agent.sign * x, agent.sign * y
+    x, y, z = agent.turn @ scene.payload.grasp_point(agent, side)
     lever = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     return np.block([[np.eye(3), np.zeros((3, 3))], [lever, np.eye(3)]])
 

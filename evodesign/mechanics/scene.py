@@ -12,6 +12,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
+import numpy as np
+from numpy.typing import NDArray
+
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Vector
 from evodesign.body.shape import Box
@@ -25,8 +28,13 @@ from evodesign.records import Case, Task
 from evodesign.tree.model import Tree
 
 ROBOT, HUMAN = "robot", "human"
+"""Names of the robot and of the person where there is one of each."""
+
 SIDES = ("left", "right")
 DIAGONAL = math.sqrt(0.5)
+
+QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
+"""Cosine and sine of no, one, two and three quarter turns."""
 
 WRIST_MOMENT = 7.0
 """Largest moment of a hand about each axis [N m] that a person's wrists bear, whoever is on the other side.
@@ -34,6 +42,13 @@ WRIST_MOMENT = 7.0
 That of extension, the weakest direction: 7.1 N m, the mean of ten men.
 Source: Delp, Grierson and Buchanan 1996.
 """
+
+
+class Role(StrEnum):
+    """What an agent is: for objectives, for what designs change, and for how it is drawn."""
+
+    ROBOT = "robot"
+    PERSON = "person"
 
 
 class Grasp(StrEnum):
@@ -103,7 +118,7 @@ class Payload:
         """Grasp point of an agent's hand, from the box's centre, in that agent's frame [m]."""
         given = self.grasp_points.get((agent.name, side))
         if given is not None:
-            return (agent.sign * given[0], agent.sign * given[1], given[2])
+            return agent.from_world(given)
         depth, width, height = self.size
         return (-depth / 2.0, 0.4 * width * (1.0 if side == "left" else -1.0), height / 2.0)
 
@@ -151,7 +166,8 @@ class Agent:
     """A robot or person and the parts of it that matter for the task.
 
     Args:
-        name: `robot` or `human`.
+        name: unique in its scene.
+        role: what it is.
         tree: links and joints.
         joints: names of the joints that move; the others are held at zero.
         hands: frame that meets the load, by side.
@@ -169,9 +185,11 @@ class Agent:
         bent_ranges: of joints that stay bent in postures, within their limits [rad], by name.
         measured: what its posture is drawn to; None: torques alone decide.
         stance: limits of its postures; None: those of the scene.
+        quarters: quarter turns about z that take its frame to the world.
     """
 
     name: str
+    role: Role
     tree: Tree
     joints: tuple[str, ...]
     hands: Mapping[str, str]
@@ -189,6 +207,7 @@ class Agent:
     bent_ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     measured: MeasuredPosture | None = None
     stance: StanceLimits | None = None
+    quarters: int = 0
 
     @property
     def pushed_frame(self) -> str:
@@ -198,12 +217,19 @@ class Agent:
     @property
     def facing(self) -> float:
         """Rotation about z that takes the agent's frame to the world [rad]."""
-        return math.pi if self.name == HUMAN else 0.0
+        return self.quarters * math.pi / 2.0
 
     @property
-    def sign(self) -> float:
-        """cos(facing): horizontal components change sign between the person's frame and the world."""
-        return -1.0 if self.name == HUMAN else 1.0
+    def turn(self) -> NDArray[np.float64]:
+        """That rotation as a matrix, exact."""
+        cos, sin = QUARTERS[self.quarters % 4]
+        return np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+
+    def from_world(self, vector: Vector) -> Vector:
+        """A vector of numbers in the agent's frame, from one in the world's."""
+        x, y, z = vector
+        cos, sin = QUARTERS[self.quarters % 4]
+        return (cos * x + sin * y, cos * y - sin * x, z)
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,7 +237,7 @@ class Scene:
     """Robot, person and load, and the limits under which they stand.
 
     Args:
-        robot, human: the agents.
+        agents: in the order of programs, records and pages.
         payload: the load.
         ground: under all feet.
         stance: limits of postures of agents that have none of their own.
@@ -220,13 +246,41 @@ class Scene:
             or the posture problem decides.
     """
 
-    robot: Agent
-    human: Agent
+    agents: tuple[Agent, ...]
     payload: Payload
     ground: Ground = field(default_factory=Ground)
     stance: StanceLimits = field(default_factory=StanceLimits)
     disturbances: Disturbances = field(default_factory=Disturbances)
     robot_share: float | None = None
+
+    @property
+    def robots(self) -> tuple[Agent, ...]:
+        """The agents that are robots."""
+        return tuple(agent for agent in self.agents if agent.role is Role.ROBOT)
+
+    @property
+    def people(self) -> tuple[Agent, ...]:
+        """The agents that are people."""
+        return tuple(agent for agent in self.agents if agent.role is Role.PERSON)
+
+    @property
+    def robot(self) -> Agent:
+        """The first robot, whose hardware a design changes."""
+        return self.robots[0]
+
+    @property
+    def human(self) -> Agent:
+        """The first person."""
+        return self.people[0]
+
+    def with_agents(self, *changed: Agent) -> Scene:
+        """The same with other agents in place of those of their names."""
+        by_name = {agent.name: agent for agent in changed}
+        return replace(self, agents=tuple(by_name.get(agent.name, agent) for agent in self.agents))
+
+    def only(self, *agents: Agent) -> Scene:
+        """The same with these agents alone."""
+        return replace(self, agents=agents)
 
     @property
     def pair(self) -> tuple[str, str]:

@@ -173,7 +173,7 @@ def near_bodies(
     if not solids:
         return []
     poses = {
-        model.agent.name: (model.agent.sign, model.at(posture).poses)
+        model.agent.name: (model.agent.turn, model.at(posture).poses)
         for model, posture in present
         if model.agent.name in solids
     }
@@ -236,7 +236,7 @@ class Checker:
 
         def found(instant: Instant, height: float) -> list[BodyDistance]:
             poses = {
-                model.agent.name: (model.agent.sign, model.at(instant.postures[model.agent.name]).poses)
+                model.agent.name: (model.agent.turn, model.at(instant.postures[model.agent.name]).poses)
                 for model in self._models
             }
             return [gap for gap in solids.near(poses, height) if gap.distance < -TOLERANCE]

@@ -35,7 +35,7 @@ class DesignCheckers:
 
     def __init__(self, scene: Scene, space: DesignSpace) -> None:
         self._scene, self._family = scene, space.family(scene.robot.tree)
-        self._robot, self._human = (AgentModel.of(agent, agent.tree) for agent in (scene.robot, scene.human))
+        self._robot, self._human = (AgentModel.of(agent, agent.tree) for agent in scene.agents)
         self._of = lru_cache(AT_HAND)(self._made)
 
     def of(self, design: Sequence[float]) -> Checker:

@@ -225,7 +225,7 @@ def symmetric_forms(scene: Scene) -> tuple[Form, Form]:
     if payload.center_of_mass[1] != 0.0:
         found = f"y = {payload.center_of_mass[1]:g} m"
         raise ModelError("payload", "center_of_mass_m", "y = 0 in a symmetric scene", found)
-    for agent in (scene.robot, scene.human):
+    for agent in scene.agents:
         left, right = (payload.grasp_point(agent, side) for side in SIDES)
         if tuple(left) != (right[0], -right[1], right[2]):
             key = f"{agent.name}_grasps_m"

@@ -19,7 +19,7 @@ from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree
 from evodesign.human.population import population
 from evodesign.human.strength import joint_strengths, with_given
 from evodesign.mechanics.contact import SoleSize
-from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Gaze
+from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Gaze, Role
 from evodesign.problem.file import (
     Facing,
     FrameTable,
@@ -47,7 +47,7 @@ def robot_agent(tables: ProblemFile, source: ProblemSource) -> Agent:
     bare = read_urdf(source.files[table.urdf], table.urdf, table.inertia)
     seen = with_surfaces(bare, source.files, source.path) if table.meshes else bare
     tree = _with_frames(_turned(seen, table.facing), table.frames, ROBOT, source)
-    agent = _agent(ROBOT, ROBOT, tree, table.hands, table.soles, table.trunk, table.joints, source)
+    agent = _agent(Role.ROBOT, ROBOT, tree, table.hands, table.soles, table.trunk, table.joints, source)
     hard = table.torque_limits is TorqueLimits.HARD
     limits = torque_limits(tables, source, agent)
     return replace(agent, torque_limits=limits, limits_torques=hard, bent_ranges=_bent(agent, table, source))
@@ -142,7 +142,7 @@ def _of_table(key: str, table: HumanTable, source: ProblemSource) -> Agent:
         raise InputError(source.path, f"{key}.{lacking}", "the frames of this URDF", "nothing")
     bare = read_urdf(source.files[table.urdf], table.urdf, InertiaRule.FILE)
     tree = _with_frames(bare, table.frames, key, source)
-    return _agent(HUMAN, key, tree, table.hands, table.soles, table.trunk, table.joints, source)
+    return _agent(Role.PERSON, key, tree, table.hands, table.soles, table.trunk, table.joints, source)
 
 
 def _generated(key: str, table: HumanTable, source: ProblemSource) -> Agent:
@@ -159,7 +159,7 @@ def _generated(key: str, table: HumanTable, source: ProblemSource) -> Agent:
     hands = HandsTable(left=HANDS["left"], right=HANDS["right"])
     soles = SolesTable(left=SOLES["left"], right=SOLES["right"], size_m=sole_size(someone))
     joints = table.joints or DEFAULT_JOINTS
-    agent = _agent(HUMAN, key, tree, hands, soles, table.trunk or TRUNK, joints, source)
+    agent = _agent(Role.PERSON, key, tree, hands, soles, table.trunk or TRUNK, joints, source)
     return replace(agent, strengths=joint_strengths(someone))
 
 
@@ -177,7 +177,7 @@ def _with_frames(tree: Tree, frames: tuple[FrameTable, ...], table: str, source:
 
 
 def _agent(
-    name: str,
+    role: Role,
     table: str,
     tree: Tree,
     hands: HandsTable,
@@ -198,13 +198,15 @@ def _agent(
     if not (joints or tree.actuated):
         raise InputError(source.path, f"{table}.urdf", "a joint that can move", "none")
     return Agent(
-        name=name,
+        name=ROBOT if role is Role.ROBOT else HUMAN,
+        role=role,
         tree=tree,
         joints=joints or tree.actuated,
         hands={side: getattr(hands, side) for side in SIDES},
         soles={side: getattr(soles, side) for side in SIDES},
         sole_size=SoleSize(*soles.size_m),
         trunk=trunk,
+        quarters=0 if role is Role.ROBOT else 2,
     )
 
 

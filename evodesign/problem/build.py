@@ -245,7 +245,7 @@ def build_problem(source: ProblemSource) -> DesignProblem:
     refuse_stiff_arms(source, loads, (robot, *people))
     disturbances = scene_disturbances(tables, source, (robot, *people), loads)
     scenes = tuple(
-        Scene(robot, human, load, ground, stance, disturbances) for human in people for load in loads
+        Scene((robot, human), load, ground, stance, disturbances) for human in people for load in loads
     )
     check_allocations(tables, source)
     scenes = tuple(replace(scene, robot_share=robot_share(tables, source, scene)) for scene in scenes)

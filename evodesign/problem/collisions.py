@@ -36,14 +36,12 @@ def with_collisions(
         return scenes
     known: dict[int, Agent] = {}
     for scene in scenes:
-        for agent in (scene.robot, scene.human):
+        for agent in scene.agents:
             if id(agent) not in known:
                 known[id(agent)] = replace(agent, collisions=_rules(table, agent, space))
     _refuse_unknown(table, source, [*known.values()])
     known = {key: _as_everyone(agent, known.values()) for key, agent in known.items()}
-    return tuple(
-        replace(scene, robot=known[id(scene.robot)], human=known[id(scene.human)]) for scene in scenes
-    )
+    return tuple(replace(scene, agents=tuple(known[id(agent)] for agent in scene.agents)) for scene in scenes)
 
 
 def may_overlap(agent: Agent) -> Mapping[BodyPair, str]:

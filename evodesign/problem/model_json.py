@@ -62,7 +62,7 @@ def _disturbance(disturbance: Disturbance) -> dict[str, Any]:
 
 def _collisions(problem: DesignProblem) -> dict[str, Any]:
     """Pairs of bodies that are kept apart, under a key that other problems do not have."""
-    agents = {agent.name: agent for agent in (problem.scene.robot, problem.scene.human)}
+    agents = {agent.name: agent for agent in problem.scene.agents}
     rules = {name: agent.collisions for name, agent in agents.items() if agent.collisions is not None}
     if not rules:
         return {}

@@ -79,11 +79,11 @@ def _averaged_scenes(scenes: Sequence[Scene]) -> tuple[tuple[Scene, ...], tuple[
     """The scenes with agents that are exactly symmetric, and a note on each that was not."""
     known: dict[int, tuple[Agent, str]] = {}
     for scene in scenes:
-        for agent in (scene.robot, scene.human):
+        for agent in scene.agents:
             if id(agent) not in known:
                 known[id(agent)] = _symmetric_agent(agent)
     mean = tuple(
-        replace(scene, robot=known[id(scene.robot)][0], human=known[id(scene.human)][0]) for scene in scenes
+        replace(scene, agents=tuple(known[id(agent)][0] for agent in scene.agents)) for scene in scenes
     )
     return mean, tuple(note for _, note in known.values() if note)
 

@@ -72,7 +72,7 @@ class DesignResult:
             return scene
         robot = scene.robot
         robot = replace(robot, tree=self.tree, torque_limits={**robot.torque_limits, **rated})
-        return replace(scene, robot=robot)
+        return scene.with_agents(robot)
 
     def every_case(self) -> Iterator[tuple[CaseSolution, str]]:
         """Every solved case with a disturbance's name, undisturbed ones first, for which that is empty."""

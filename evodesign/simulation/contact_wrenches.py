@@ -40,7 +40,7 @@ def hand_wrenches(found: SimulatedScene, parts: AgentParts) -> Array:
     first = int(model.body_dofadr[found.load])
     jacobian = data.efc_J.reshape(data.nefc, model.nv)[:, first : first + 6]
     grasps = data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
-    turned = np.array([parts.agent.sign, parts.agent.sign, 1.0])
+    agent_from_world = parts.agent.turn.T
     wrenches = np.zeros((2, 6))
     for row, side in enumerate(SIDES):
         number = model.equality(f"{parts.agent.name}/{side}_hand").id
@@ -49,5 +49,5 @@ def hand_wrenches(found: SimulatedScene, parts: AgentParts) -> Array:
         moment = data.xmat[found.load].reshape(3, 3) @ moment  # a free body turns in its own axes
         lever = data.site_xpos[parts.hands[side]] - data.xpos[found.load]
         moment = moment - np.cross(lever, force)
-        wrenches[row] = np.r_[-turned * force, -turned * moment]
+        wrenches[row] = np.r_[-agent_from_world @ force, -agent_from_world @ moment]
     return wrenches

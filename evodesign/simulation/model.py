@@ -127,14 +127,14 @@ def simulated_scene(
     spec.worldbody.add_light(pos=[0.0, -2.0, 4.0], dir=[0.0, 0.5, -1.0])
     load = _add_load(spec, scene.payload)
     frames = {}
-    for agent in (scene.robot, scene.human):
+    for agent in scene.agents:
         frames[agent.name] = _frames(agent, trees[agent.name], postures[agent.name])
         _add_agent(spec, agent, trees[agent.name], scene.ground, give)
         for side in SIDES:
             _add_grasp(spec, load, scene.payload, agent, side, frames[agent.name], give)
     compiled = spec.compile()
     data = mujoco.MjData(compiled)
-    parts = {agent.name: _parts(compiled, agent) for agent in (scene.robot, scene.human)}
+    parts = {agent.name: _parts(compiled, agent) for agent in scene.agents}
     found = SimulatedScene(compiled, data, parts, compiled.body(LOAD).id)
     _place(found, postures, frames, height)
     mujoco.mj_forward(compiled, data)
@@ -231,9 +231,9 @@ def _add_grasp(
 ) -> None:
     """A hand on the load: its place, and with rigid grasps its turn in the first posture."""
     name = f"{agent.name}/{side}_hand"
-    along, across, up = payload.grasp_point(agent, side)
+    grip = agent.turn @ payload.grasp_point(agent, side)
     turn = quaternion_wxyz(frames[agent.hands[side]].rotation)
-    site = load.add_site(name=f"{name}_grip", pos=[agent.sign * along, agent.sign * across, up], quat=turn)
+    site = load.add_site(name=f"{name}_grip", pos=grip, quat=turn)
     rigid = payload.grasp is Grasp.RIGID
     spec.add_equality(
         name=name,

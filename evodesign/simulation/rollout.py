@@ -98,7 +98,7 @@ def _frame(found: SimulatedScene) -> dict[str, Array]:
 
 def _fell(found: SimulatedScene, plan: Plan, name: str, place: int) -> bool:
     parts = found.agents[name]
-    planned = plan.agents[name].bases[place] * [parts.agent.sign, parts.agent.sign, 1.0]
+    planned = parts.agent.turn @ plan.agents[name].bases[place]
     return not np.linalg.norm(found.data.xpos[parts.root] - planned) < FALLEN
 
 

@@ -14,7 +14,7 @@ from statistics import fmean
 from evodesign.human.anthropometry import Person
 from evodesign.human.measured_posture import HumanPosture, PostureRow
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import HUMAN, ROBOT, Payload, Scene
+from evodesign.mechanics.scene import HUMAN, ROBOT, Payload, Role, Scene
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.formulations.person import PersonProblem
@@ -84,7 +84,9 @@ class Holder:
     def hold(self, palms: float, load: float) -> AgentPosture | None:
         """How the person stands with a load [kg] in the palms at a height [m], ankles at x = 0."""
         agent = self._form.agent
-        scene = Scene(replace(agent, name=ROBOT), agent, Payload(LARGE, 2.0 * load))
+        scene = Scene(
+            (replace(agent, name=ROBOT, role=Role.ROBOT, quarters=0), agent), Payload(LARGE, 2.0 * load)
+        )
         problem = PersonProblem(self._form, scene, 1.0, SolverOptions(compiled=False), self._solvers)
         raw = problem.best_of_many(palms - LARGE[2] / 2.0, 0.0)
         if raw is None:

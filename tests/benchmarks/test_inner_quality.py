@@ -47,7 +47,7 @@ def test_random_starts_are_solved_with_the_bodies_apart_that_the_problem_keeps_a
     judge = Judge(problem, Precomputed(meetings=near), 1)
     assert len(judge.scenes) == 2
     for scene in judge.scenes:
-        assert all(agent.collisions and agent.collisions.parted for agent in (scene.robot, scene.human))
+        assert all(agent.collisions and agent.collisions.parted for agent in scene.agents)
 
 
 @pytest.mark.parametrize("variant", [name for name in VARIANTS if name != DEFAULT])

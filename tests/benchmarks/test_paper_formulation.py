@@ -118,7 +118,7 @@ def test_at_our_posture_the_papers_program_asks_what_ours_does(
     values = [solved.values[variable.name] for variable in program.variables]
     cost, *found = function(*values, [*design, HEIGHT])
     expected = sum(np.sum(solved.values[f"{name}.torques"] ** 2) for name in (ROBOT, HUMAN)) / TORQUE_UNIT**2
-    for agent in (problem.scene.robot, problem.scene.human):
+    for agent in problem.scene.agents:
         joints = [agent.tree.joint_by_name[name] for name in agent.joints]
         ranges = [min(joint.upper, math.pi) - max(joint.lower, -math.pi) for joint in joints]
         bent = np.sum((solved.values[f"{agent.name}.joints"] / ranges) ** 2)

@@ -156,7 +156,7 @@ def test_each_part_of_a_foot_is_kept_from_that_of_the_other(problem: DesignProbl
             agent.soles,
             checked_pairs(agent.tree, agent.joints, agent.hands, agent.soles),
         )
-        for agent in (problem.scene.robot, problem.scene.human)
+        for agent in problem.scene.agents
     }
     assert {("l_foot_front", "r_foot_front"), ("l_foot_rear", "r_foot_rear")} <= set(feet["robot"])
     assert set(feet["human"]) == {("LeftFoot", "RightFoot"), ("LeftToe", "RightToe")}

@@ -59,7 +59,8 @@ def scene_of(problem: DesignProblem) -> Scene:
     human = replace(problem.scene.human, coupled_joints=coupled_joints(), gaze=gaze)
     human = replace(human, measured=measured_posture(1.82))
     stance = replace(problem.scene.stance, feet_gap=0.005)
-    return replace(problem.scene, human=human, payload=payload, stance=stance, disturbances=DISTURBED)
+    scene = problem.scene.with_agents(human)
+    return replace(scene, payload=payload, stance=stance, disturbances=DISTURBED)
 
 
 def random_values(program: Program, rng: np.random.Generator) -> dict[str, np.ndarray]:
@@ -202,7 +203,7 @@ def test_a_point_grasp_that_passes_a_moment_is_seen(problem: DesignProblem) -> N
 def test_torques_beyond_their_limits_are_seen(problem: DesignProblem) -> None:
     joint = problem.scene.robot.joints[0]
     robot = replace(problem.scene.robot, torque_limits={joint: 1.0}, limits_torques=True)
-    scene = replace(problem.scene, robot=robot)
+    scene = problem.scene.with_agents(robot)
     forms = (whole(robot), whole(scene.human))
     program = program_of(scene, forms, TERMS)
     values = random_values(program, np.random.default_rng(1))

@@ -132,7 +132,7 @@ def test_the_quick_gradients_are_the_exact_ones(problem: DesignProblem, known: P
     """Of every objective, against five-point differences along the exact tangent (`sensitivities`)."""
     limits = dict.fromkeys(problem.scene.robot.joints, 30.0)
     robot = replace(problem.scene.robot, torque_limits=limits)
-    scenes = tuple(replace(scene, robot=robot) for scene in problem.scenes)
+    scenes = tuple(scene.with_agents(robot) for scene in problem.scenes)
     names = [name for name in objective_kinds() if name not in NEED_MORE]
     every = tuple(
         Objective(name=name, sense=Sense.MINIMISE, unit="") for name in [*names, "q90_robot_torque"]

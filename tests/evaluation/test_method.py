@@ -148,7 +148,7 @@ def test_whole_postures_are_the_refuge_and_native_as_well(
     """Where no symmetric posture can be, IPOPT is not asked for one; the whole one found is as good."""
     unscaled, scene = unscaled_values(problem), problem.scene
     setting = Setting(scene, problem.space, problem.weights, NATIVE)
-    checker = Checker(scene, *(AgentModel.of(agent, agent.tree) for agent in (scene.robot, scene.human)))
+    checker = Checker(scene, *(AgentModel.of(agent, agent.tree) for agent in scene.agents))
     known = PostureProblem(setting, Symmetry.ON).solve(unscaled, Hold(height_m=1.0), checker)
     assert known.attempt is not None
     rows, solve = whole_rows(setting), NativeMethod.solve

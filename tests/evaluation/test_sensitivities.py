@@ -51,7 +51,7 @@ def wide(problem: DesignProblem) -> DesignProblem:
     """The point-grasp problem with every objective that there is, and limits that joints do not meet."""
     limits = dict.fromkeys(problem.scene.robot.joints, 30.0)
     robot = replace(problem.scene.robot, torque_limits=limits)
-    scenes = tuple(replace(scene, robot=robot) for scene in problem.scenes)
+    scenes = tuple(scene.with_agents(robot) for scene in problem.scenes)
     every = [Objective(name=name, sense=Sense.MINIMISE, unit=kind.unit) for name, kind in OBJECTIVES.items()]
     return replace(problem, scenes=scenes, objectives=tuple(every))
 

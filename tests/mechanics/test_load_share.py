@@ -26,7 +26,7 @@ def lever_rule(scene: Scene, payload: Payload, moment: float) -> tuple[float, fl
 
     s x_r + (1 - s) x_h = c + (4 m + X (z_r - z_h)) / m g
     """
-    points = {agent.name: payload.grasp_point(agent, "left") for agent in (scene.robot, scene.human)}
+    points = {agent.name: payload.grasp_point(agent, "left") for agent in scene.agents}
     x_robot, x_human = points[ROBOT][0], -points[HUMAN][0]
     weight = payload.mass * GRAVITY
     spare = (4.0 * moment + scene.stance.push * abs(points[ROBOT][2] - points[HUMAN][2])) / weight

@@ -89,8 +89,8 @@ def random_case(problem: DesignProblem, seed: int) -> Case:
         grasp_points=own if seed % 3 else {},
     )
     tree = space.resized(scene.robot.tree, space.values(tuple(rng.uniform(size=len(space.parameters)))))
-    scene = replace(scene, human=human, payload=payload)
-    places = {a.name: placed(a, a.tree, rng) for a in (scene.robot, scene.human)}
+    scene = replace(scene.with_agents(human), payload=payload)
+    places = {a.name: placed(a, a.tree, rng) for a in scene.agents}
     return Case(scene, tree, {**places, PAYLOAD: level_load(rng.uniform(0.5, 1.5))})
 
 
@@ -103,14 +103,14 @@ def without_legs(case: Case) -> Case:
         agents[agent.name] = replace(agent, joints=joints)
         place = places[agent.name]
         places[agent.name] = replace(place, joints={name: place.joints[name] for name in joints})
-    return replace(case, scene=replace(case.scene, **agents), places=places)
+    return replace(case, scene=case.scene.with_agents(*agents.values()), places=places)
 
 
 def cut_rows(case: Case, wrenches: np.ndarray, system: CoupledSystem) -> ca.SX:
     """h - Q^T f by cutting: each agent's missing root force and moment and its torques, then the load's."""
     rows, pushes, turns = [], [], []
     for agent in case.agents:
-        place, turn = case.places[agent.name], ca.diag(ca.DM([agent.sign, agent.sign, 1.0]))
+        place, turn = case.places[agent.name], ca.DM(agent.turn)
         tree = case.tree_of(agent)
         base = Pose(euler_rotation(ca.DM(place.base_angles)), ca.DM(place.base_position))
         poses = forward(tree, base, place.joints)
@@ -239,7 +239,7 @@ def postures_of(scene: Scene, raw: RawSolution) -> dict[str, AgentPosture]:
         agent.name: whole(agent).expand(
             {name.removeprefix(f"{agent.name}."): v for name, v in raw.values.items() if agent.name in name}
         )
-        for agent in (scene.robot, scene.human)
+        for agent in scene.agents
     }
 
 
@@ -301,7 +301,7 @@ def test_limits_of_the_ground_cost_torque(problem: DesignProblem, evaluator: Eva
         torques = np.array([height.postures[agent].torques[joint] for agent, joint in system.joints])
         wrenches = contact_wrenches(system, torques)
         assert np.abs(wrenches - wrenches_of(height.postures, system)).max() < 1e-4
-        for agent in (problem.scene.robot, problem.scene.human):
+        for agent in problem.scene.agents:
             for foot in system.wrenches_of(agent.name, ContactKind.FOOT, wrenches).values():
                 x, y = center_of_pressure(foot)
                 assert abs(x) <= agent.sole_size.length / 2.0 + 1e-6

@@ -44,7 +44,7 @@ def keeping_clear(problem: DesignProblem, lifted: Lifted, pairs: list[list[str]]
     text = source.text.replace("[objectives]", table)
     scene = build_problem(msgspec.structs.replace(source, text=text)).scene
     setting = replace(lifted.setting, scene=scene)
-    robot, human = (AgentModel.of(agent, agent.tree) for agent in (scene.robot, scene.human))
+    robot, human = (AgentModel.of(agent, agent.tree) for agent in scene.agents)
     lifts = LiftProblem(setting, symmetric=True)
     return replace(lifted, setting=setting, robot=robot, human=human, lifts=lifts)
 
@@ -72,7 +72,7 @@ def deepest(lifted: Lifted, solution: LiftSolution) -> float:
     bodies = SceneBodies(solids, lifted.setting.scene.payload.size)
     found = [0.0]
     for instant in course.instants(np.linspace(0.0, course.lift.seconds, 200)):
-        poses = {n: (m.agent.sign, m.at(instant.postures[n]).poses) for n, m in models.items()}
+        poses = {n: (m.agent.turn, m.at(instant.postures[n]).poses) for n, m in models.items()}
         assert instant.height is not None
         found += [-gap.distance for gap in bodies.near(poses, instant.height)]
     return max(found)

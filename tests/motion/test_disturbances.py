@@ -118,7 +118,7 @@ def test_torques_under_disturbances_are_those_of_inverse_dynamics(
         assert [*instant.disturbed] == [each.name for each in EVERY]
         for disturbance in EVERY:
             posture = instant.disturbed[disturbance.name][who]
-            push = np.array(disturbance.push_on(PushedAt(who))) * [agent.sign, agent.sign, 1.0]
+            push = np.array(disturbance.push_on(PushedAt(who))) * np.diag(agent.turn)
             root, torques = asked(pushed, who, posture, motion.agents[who], push)
             assert root == pytest.approx(0.0, abs=1e-5)
             assert torques == pytest.approx(posture.torques, abs=1e-5)
@@ -137,9 +137,9 @@ def test_hands_carry_what_a_disturbance_makes_of_the_load(pushed: Lifted, found:
             mass = scene.payload.mass * (1.0 + disturbance.mass_share)
             force = np.array([0.0, 0.0, -mass * (GRAVITY + motion.load_acceleration)])
             force += disturbance.push_on(PushedAt.LOAD)
-            for agent in (scene.robot, scene.human):
+            for agent in scene.agents:
                 wrenches = instant.disturbed[disturbance.name][agent.name].hand_wrenches
-                turned = np.array([agent.sign, agent.sign, 1.0])
+                turned = np.diag(agent.turn)
                 force -= sum(turned * wrenches[side][:3] for side in SIDES)
             assert force == pytest.approx(0.0, abs=1e-5)
 
@@ -147,7 +147,7 @@ def test_hands_carry_what_a_disturbance_makes_of_the_load(pushed: Lifted, found:
 def test_a_check_sees_a_wrong_torque_under_a_disturbance(pushed: Lifted, found: LiftSolution) -> None:
     course, scene = found.course, pushed.setting.scene
     assert course is not None
-    models = (pushed.robot, pushed.human)
+    models = pushed.agents
     checker = LiftChecker(scene, *models, Checker(scene, *models))
     assert checker.check(course).wrong == ""
     robot = dict(course.disturbed[HEAVIER.name]["robot"])

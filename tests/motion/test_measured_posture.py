@@ -24,7 +24,7 @@ LIFT = Lift(0.8, 1.1, 1.5, knots=8)
 @pytest.fixture(scope="module")
 def lifted(problem: DesignProblem) -> Lifted:
     human = replace(problem.scene.human, measured=measured_posture(1.82), rhythms=rhythms())
-    scene = replace(problem.scene, human=human)
+    scene = problem.scene.with_agents(human)
     setting = Setting(scene, problem.space, problem.weights, problem.options)
     return Lifted(
         setting=setting,

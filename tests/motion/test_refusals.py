@@ -56,7 +56,7 @@ def test_torque_limits_that_holds_meet_and_no_motion_are_said(hasty: Lifted) -> 
         for joint in scene.robot.joints
     }
     robot = replace(scene.robot, torque_limits=limits, limits_torques=True)
-    setting = replace(hasty.setting, scene=replace(scene, robot=robot))
+    setting = replace(hasty.setting, scene=scene.with_agents(robot))
     limited = LiftProblem(setting, symmetric=True)
     found = limited.solve(hasty.design, lift, holds, AgentModel.of(robot, scene.robot.tree), hasty.human)
     assert found.status not in {Status.SOLVED, Status.TIME_LIMIT}

@@ -206,7 +206,7 @@ def test_a_posture_has_the_bits_of_the_machines_compiler(
     problem: DesignProblem, request: pytest.FixtureRequest
 ) -> None:
     scene, unscaled = problem.scene, problem.space.unscaled(problem.scene.robot.tree)
-    checker = Checker(scene, *(AgentModel.of(agent, agent.tree) for agent in (scene.robot, scene.human)))
+    checker = Checker(scene, *(AgentModel.of(agent, agent.tree) for agent in scene.agents))
 
     def solved() -> str:
         setting = Setting(scene, problem.space, problem.weights, NATIVE)

@@ -117,7 +117,7 @@ def with_persons_joints(problem: DesignProblem, joints: dict[str, float], *, upp
         for joint in human.tree.joints
     )
     human = replace(human, tree=human.tree.reshaped(human.tree.links, moved))
-    return replace(problem, scenes=tuple(replace(scene, human=human) for scene in problem.scenes))
+    return replace(problem, scenes=tuple(scene.with_agents(human) for scene in problem.scenes))
 
 
 def effort(evaluator: Evaluator, problem: DesignProblem, values: object, solution: CaseSolution) -> float:

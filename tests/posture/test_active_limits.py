@@ -224,7 +224,7 @@ def driven(problem: DesignProblem, rated: float) -> DesignProblem:
         for joint in robot.tree.joints
     )
     robot = replace(robot, tree=robot.tree.reshaped(robot.tree.links, joints))
-    return replace(problem, scenes=tuple(replace(scene, robot=robot) for scene in problem.scenes))
+    return replace(problem, scenes=tuple(scene.with_agents(robot) for scene in problem.scenes))
 
 
 def test_what_an_actuator_holds_costs_what_a_larger_one_saves(problem: DesignProblem) -> None:

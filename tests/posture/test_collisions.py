@@ -149,11 +149,10 @@ def kept_apart(problem: DesignProblem) -> DesignProblem:
             ),
         )
         for scene in problem.scenes
-        for agent in (scene.robot, scene.human)
+        for agent in scene.agents
     }
     scenes = tuple(
-        replace(scene, robot=people[id(scene.robot)], human=people[id(scene.human)])
-        for scene in problem.scenes
+        scene.with_agents(*[people[id(agent)] for agent in scene.agents]) for scene in problem.scenes
     )
     return replace(problem, scenes=scenes)
 
@@ -177,7 +176,7 @@ def met(apart: DesignProblem) -> dict:
 
 @pytest.mark.slow
 def test_pairs_that_come_near_are_found_without_being_named(met: dict, apart: DesignProblem) -> None:
-    checked = {agent.name: agent.collisions.checked for agent in (apart.scene.robot, apart.scene.human)}
+    checked = {agent.name: agent.collisions.checked for agent in apart.scene.agents}
     assert ("l_foot_front", "r_foot_front") in met["robot", ""]
     assert set(met["robot", ""]) <= set(checked["robot"])
     assert set(met["human", ""]) <= set(checked["human"])
@@ -214,7 +213,7 @@ def test_links_are_as_far_apart_as_in_the_world(apart: DesignProblem) -> None:
     human, scene = apart.scene.human, apart.scene
     assert human.collisions is not None
     rules = replace(human.collisions, parted=human.collisions.checked)
-    form = symmetric_forms(replace(scene, human=replace(human, collisions=rules)))[1]
+    form = symmetric_forms(scene.with_agents(replace(human, collisions=rules)))[1]
     program = person_program(form, scene, 1.0, switched=True)
     assert isinstance(program.switches, Parted)
     (parted,) = program.switches._bodies
@@ -358,7 +357,7 @@ def test_bodies_that_are_wider_than_their_shapes_are_parted_farther(apart: Desig
     scene, task, wide = with_meetings(apart.scene, met), Hold(height_m=1.0), 0.2
     problem = PostureProblem(replace(setting_of(apart), scene=scene), Symmetry.ON)
     values = tuple(apart.space.unscaled(scene.robot.tree))
-    models = [AgentModel.of(agent, agent.tree) for agent in (scene.robot, scene.human)]
+    models = [AgentModel.of(agent, agent.tree) for agent in scene.agents]
     hands = {(f"{ROBOT} chest", f"{ROBOT} {hand}") for hand in ("l_hand", "r_hand")}
     asked: list[list[BodyDistance]] = []
 
@@ -487,7 +486,7 @@ def test_signs_are_those_of_coal_in_random_postures(name: str, apart: DesignProb
         assert np.all(least <= np.array([way.distance for way in ways]) + 1e-9)
         assert np.all(least > -1.0)
         parts = {part.partition(".")[2]: value for part, value in values.items()}
-        poses = {name: (agent.sign, model.at(form.expand(parts)).poses)}
+        poses = {name: (agent.turn, model.at(form.expand(parts)).poses)}
         gaps = {
             tuple(each.rpartition(" ")[2] for each in (gap.first, gap.second)): gap.distance
             for gap in solids.near(poses, height, 0.05)

@@ -56,7 +56,7 @@ def test_a_spine_that_folds_bends_no_further_than_its_ranges(
     problem: DesignProblem, free: CaseSolution
 ) -> None:
     """At 0.4 m joints took all of their own ranges; the check refuses that of a person who may not."""
-    scene = replace(problem.scene, human=replace(problem.scene.human, coupled_joints=coupled_joints()))
+    scene = problem.scene.with_agents(replace(problem.scene.human, coupled_joints=coupled_joints()))
     assert max(excesses(free).values()) > 30.0
     found = sizes(checker_of(scene).residuals(free.instants[0], LOW))
     assert math.degrees(found["human.coupled_joints"]) == pytest.approx(max(excesses(free).values()))

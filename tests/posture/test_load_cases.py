@@ -125,15 +125,15 @@ def test_hands_and_feet_carry_weight_and_push(borne: CaseSolution, problem: Desi
     for case in EVERY:
         postures, on_load = borne.disturbed[case.name], case.push_on(PushedAt.LOAD)
         forward = {
-            agent.name: -agent.sign * sum(postures[agent.name].hand_wrenches[side][0] for side in SIDES)
-            for agent in (scene.robot, scene.human)
+            agent.name: -agent.turn[0][0] * sum(postures[agent.name].hand_wrenches[side][0] for side in SIDES)
+            for agent in scene.agents
         }
         held = -sum(postures[agent].hand_wrenches[side][2] for agent in forward for side in SIDES)
         load = scene.payload.mass * (1.0 + case.mass_share) * GRAVITY
         assert held == pytest.approx(load - on_load[2], abs=1e-4)
         assert sum(forward.values()) == pytest.approx(-on_load[0], abs=1e-4)
         assert abs(forward[ROBOT] - forward[HUMAN]) / 2.0 <= scene.stance.push + 1e-4
-        for agent in (scene.robot, scene.human):
+        for agent in scene.agents:
             posture, push = postures[agent.name], case.push_on(PushedAt(agent.name))
             up = sum(float(w[2]) for w in posture.foot_wrenches.values())
             down = sum(float(w[2]) for w in posture.hand_wrenches.values()) + push[2]
@@ -242,7 +242,7 @@ def test_a_push_beside_the_middle_line_is_refused_by_name_in_symmetric_postures(
     problem: DesignProblem,
 ) -> None:
     scene = disturbed(problem, ROBOT_BACK)
-    beside = replace(scene, robot=replace(scene.robot, trunk=("chest", "l_upper_arm")))
+    beside = scene.with_agents(replace(scene.robot, trunk=("chest", "l_upper_arm")))
     with pytest.raises(ModelError, match=r"'robot pushed': wanted a push on the middle line.*'l_upper_arm'"):
         symmetric_forms(beside)
 
@@ -253,8 +253,8 @@ def test_free_postures_resist_a_sideways_push(problem: DesignProblem, undisturbe
     hands = solution.disturbed["gust"]
     scene = problem.scene
     sideways = sum(
-        -agent.sign * float(hands[agent.name].hand_wrenches[side][1])
-        for agent in (scene.robot, scene.human)
+        -agent.turn[1][1] * float(hands[agent.name].hand_wrenches[side][1])
+        for agent in scene.agents
         for side in SIDES
     )
     assert sideways == pytest.approx(-10.0, abs=1e-4)

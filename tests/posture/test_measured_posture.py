@@ -217,7 +217,7 @@ def test_a_start_of_the_robot_alone_begins_beside_the_mean_person(
     design = problem.space.unscaled(scene.robot.tree)
     robot = ReachProblem(setting, symmetric=True, solvers=solvers).extreme_posture(design, HIGHEST)
     assert {name.split(".")[0] for name in robot[0]} == {ROBOT}
-    checker = Checker(scene, *(AgentModel.of(agent, agent.tree) for agent in (scene.robot, scene.human)))
+    checker = Checker(scene, *(AgentModel.of(agent, agent.tree) for agent in scene.agents))
     trial = postures.solve(design, Hold(height_m=0.9), robot, checker)
     assert [attempt.status for attempt in trial.attempts] == [Status.SOLVED]
 

@@ -53,7 +53,7 @@ def test_the_person_holds_the_load_up_to_there_and_no_further(
 def test_a_shorter_person_reaches_less_high(problem: DesignProblem, reach: PersonReach) -> None:
     """Proportions are those of stature, so the highest load is, but for the box's thickness."""
     tree = human_tree(Person(1.6, 60.0, Sex.MALE))
-    scene = replace(problem.scene, human=replace(problem.scene.human, tree=tree))
+    scene = problem.scene.with_agents(replace(problem.scene.human, tree=tree))
     shorter = person_reach(scene, problem.options, symmetric=True)
     assert shorter is not None
     assert shorter.highest / reach.highest == pytest.approx(1.6 / 1.82, abs=0.03)

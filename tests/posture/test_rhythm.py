@@ -114,7 +114,7 @@ def test_the_person_holds_the_load_with_a_spine_that_bends_as_a_whole(
 
 def test_the_cost_of_a_rhythm_moves_as_its_joints_together_do(problem: DesignProblem, scene: Scene) -> None:
     """The chain rule: the slope by the flexion is the sum of the slopes by the joints times their shares."""
-    free = replace(scene, human=replace(scene.human, rhythms=()))
+    free = scene.with_agents(replace(scene.human, rhythms=()))
     slopes = []
     for each in (scene, free):
         form = half(each.human)

@@ -24,7 +24,7 @@ HEIGHT = 1.2
 def limited(problem: DesignProblem, limits: Mapping[str, float], height: float = HEIGHT) -> DesignProblem:
     """The point-grasp problem at one height, with a robot whose joint torques are no more than this [N m]."""
     robot = replace(problem.scene.robot, torque_limits=limits, limits_torques=bool(limits))
-    scenes = tuple(replace(scene, robot=robot) for scene in problem.scenes)
+    scenes = tuple(scene.with_agents(robot) for scene in problem.scenes)
     return replace(problem, scenes=scenes, tasks=(Hold(height_m=height),))
 
 

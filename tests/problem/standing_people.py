@@ -13,7 +13,7 @@ from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree
 from evodesign.human.strength import joint_strengths
 from evodesign.mechanics.contact import SoleSize
-from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Payload, Scene
+from evodesign.mechanics.scene import HUMAN, SIDES, Agent, Payload, Role, Scene
 from evodesign.posture.results import AgentPosture
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import JointKind
@@ -26,14 +26,21 @@ MAN = Person(1.80, 75.0, Sex.MALE)
 def person(of: Person = MAN) -> Agent:
     size = SoleSize(*sole_size(of))
     return Agent(
-        HUMAN, human_tree(of), DEFAULT_JOINTS, HANDS, SOLES, size, TRUNK, strengths=joint_strengths(of)
+        HUMAN,
+        Role.PERSON,
+        human_tree(of),
+        DEFAULT_JOINTS,
+        HANDS,
+        SOLES,
+        size,
+        TRUNK,
+        strengths=joint_strengths(of),
     )
 
 
 PERSON = person()
 SCENE = Scene(
-    robot=Agent(ROBOT, PERSON.tree, (), {}, {}, PERSON.sole_size, ()),
-    human=PERSON,
+    agents=(PERSON,),
     payload=Payload(size=(0.4, 0.4, 0.3), mass=15.0),
 )
 """Of which quantities of the person read the person alone."""

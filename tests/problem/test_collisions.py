@@ -35,7 +35,7 @@ def refused(problem: DesignProblem, *lines: str) -> str:
 
 
 def test_without_the_table_nothing_is_kept_apart(problem: DesignProblem) -> None:
-    assert all(agent.collisions is None for agent in (problem.scene.robot, problem.scene.human))
+    assert all(agent.collisions is None for agent in problem.scene.agents)
     assert "collisions" not in model_json(problem)
 
 

@@ -207,7 +207,7 @@ def driven(problem: DesignProblem) -> DesignProblem:
     robot = replace(problem.scene.robot, torque_limits=dict.fromkeys(problem.scene.robot.joints, 500.0))
     return replace(
         problem,
-        scenes=tuple(replace(scene, robot=robot) for scene in problem.scenes),
+        scenes=tuple(scene.with_agents(robot) for scene in problem.scenes),
         space=DesignSpace((*problem.space.parameters[:2], *actuators)),
         tasks=(Hold(height_m=1.2),),
         objectives=tuple(

@@ -21,7 +21,7 @@ def with_joint(problem: DesignProblem, joint: Joint) -> DesignProblem:
     scene, tree = problem.scene, problem.scene.human.tree
     joints = tuple(joint if other.name == joint.name else other for other in tree.joints)
     human = replace(scene.human, tree=replace(tree, joints=joints))
-    return replace(problem, scenes=(replace(scene, human=human),))
+    return replace(problem, scenes=(scene.with_agents(human),))
 
 
 def changed(
@@ -96,7 +96,7 @@ def test_a_joint_with_a_name_of_its_own_is_not_judged(problem: DesignProblem) ->
         replace(joint, name="hip") if joint.name == "jLeftHip_roty" else joint for joint in tree.joints
     )
     human = replace(turned.scene.human, tree=replace(tree, joints=renamed), joints=("hip",))
-    assert strange(replace(turned, scenes=(replace(turned.scene, human=human),))) == ()
+    assert strange(replace(turned, scenes=(turned.scene.with_agents(human),))) == ()
 
 
 def test_a_joint_that_is_held_outside_of_its_range_is_noted(problem: DesignProblem) -> None:
@@ -111,7 +111,7 @@ def test_a_joint_that_is_held_outside_of_its_range_is_noted(problem: DesignProbl
 def test_heights_at_which_nobody_was_measured_are_named(problem: DesignProblem) -> None:
     """Palms of the 1.82 m person between 0.44 and 0.54 of stature: with the load at 0.8 m, not at 1 m."""
     human = replace(problem.scene.human, measured=measured_posture(1.82))
-    built = replace(problem, scenes=(replace(problem.scene, human=human),))
+    built = replace(problem, scenes=(problem.scene.with_agents(human),))
     assert strange(problem) == ()
     assert strange(built) == (
         "human: how measured people stand with the load at 0.8 m is an assumption: nobody was measured who "

@@ -159,6 +159,6 @@ def test_a_person_twice_as_strong_has_half_the_effort(result: DesignResult) -> N
         )
         for name, both in result.scenes[0].human.strengths.items()
     }
-    scene = replace(result.scenes[0], human=replace(result.scenes[0].human, strengths=strong))
+    scene = result.scenes[0].with_agents(replace(result.scenes[0].human, strengths=strong))
     once, twice = (objective_value("human_effort", of) for of in (result, replace(result, scenes=(scene,))))
     assert twice == pytest.approx(once / 2.0)

@@ -108,7 +108,8 @@ def test_samples_share_programs_and_starts() -> None:
         for keys in ({}, {"posture_sample": 2})
     )
     assert all_mean_people(precompute_setting(drawn)) == precompute_setting(mean)
-    assert program_key("joint", mean.scene.human) == program_key("joint", drawn.scene.human)
+    keys = [program_key("joint", scene, scene.human) for scene in (mean.scene, drawn.scene)]
+    assert keys[0] == keys[1]
 
 
 def test_a_spread_changes_no_evaluation() -> None:

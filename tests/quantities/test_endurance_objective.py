@@ -29,7 +29,7 @@ def test_it_is_the_least_time_of_all_cases(problem: DesignProblem, evaluator: Ev
 
 def test_it_is_nothing_where_nothing_tires(problem: DesignProblem, evaluator: Evaluator) -> None:
     result = evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
-    weak = tuple(replace(scene, human=replace(scene.human, strengths={})) for scene in result.scenes)
+    weak = tuple(scene.with_agents(replace(scene.human, strengths={})) for scene in result.scenes)
     assert objective_value("endurance_s", replace(result, scenes=weak)) is None
 
 

@@ -16,7 +16,7 @@ from evodesign.human.endurance import endurance
 from evodesign.human.niosh import Coupling
 from evodesign.human.strength import joint_strengths
 from evodesign.mechanics.contact import SoleSize
-from evodesign.mechanics.scene import HUMAN, Agent
+from evodesign.mechanics.scene import HUMAN, Agent, Role
 from evodesign.posture.check import AgentModel
 from evodesign.posture.results import AgentPosture
 from evodesign.quantities.ergonomics import ergonomics, ergonomics_json
@@ -30,7 +30,9 @@ MAN = Person(1.82, 72.7, Sex.MALE)
 def human() -> Agent:
     tree = human_tree(MAN)
     size = SoleSize(*sole_size(MAN))
-    return Agent(HUMAN, tree, DEFAULT_JOINTS, HANDS, SOLES, size, TRUNK, strengths=joint_strengths(MAN))
+    return Agent(
+        HUMAN, Role.PERSON, tree, DEFAULT_JOINTS, HANDS, SOLES, size, TRUNK, strengths=joint_strengths(MAN)
+    )
 
 
 PERSON = human()
@@ -140,7 +142,7 @@ def test_the_back_the_load_and_the_scores_are_those_of_the_quantities() -> None:
         {side: np.array(wrench) for side, wrench in detail.hand_wrenches.items()},
         {side: np.array(wrench) for side, wrench in detail.foot_wrenches.items()},
     )
-    scene = replace(SCENE, human=PERSON)
+    scene = SCENE.with_agents(PERSON)
     assert found.load_torque == pytest.approx(human_load_torque(scene, {HUMAN: solved}))
     assert found.back.compression == pytest.approx(back_compression(scene, {HUMAN: solved}))
     assert found.endurance.seconds == endurance(detail.torques_n_m, PERSON.strengths).seconds

@@ -60,7 +60,7 @@ def test_torques_of_a_design_that_misses_a_height_are_absent(result: DesignResul
 def limited(result: DesignResult) -> DesignResult:
     """The result of a robot whose joints have limits of 20 N m, and its elbows 8."""
     limits = {joint: 8.0 if joint.endswith("elbow") else 20.0 for joint in result.robot.joints}
-    scenes = tuple(replace(s, robot=replace(s.robot, torque_limits=limits)) for s in result.scenes)
+    scenes = tuple(s.with_agents(replace(s.robot, torque_limits=limits)) for s in result.scenes)
     return replace(result, scenes=scenes)
 
 

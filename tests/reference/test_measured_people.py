@@ -25,7 +25,7 @@ from evodesign.human.coupled_joints import rhythms
 from evodesign.human.measured_posture import MARK, measured_posture
 from evodesign.mechanics.contact import SoleSize
 from evodesign.mechanics.floating_base import ROOT, BodyState, Configuration, FloatingBody
-from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Payload, Scene
+from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Payload, Role, Scene
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.check import AgentModel
@@ -68,6 +68,7 @@ def predicted(row: Mapping[str, str]) -> Compared:
     given = measured_posture(stature, rows_without(row["subject"]))
     agent = Agent(
         name=HUMAN,
+        role=Role.PERSON,
         tree=human_tree(man),
         joints=DEFAULT_JOINTS,
         hands=HANDS,
@@ -76,8 +77,9 @@ def predicted(row: Mapping[str, str]) -> Compared:
         trunk=TRUNK,
         rhythms=rhythms(),
         measured=given,
+        quarters=2,
     )
-    form, scene = half(agent), Scene(replace(agent, name=ROBOT), agent, BOX)
+    form, scene = half(agent), Scene((replace(agent, name=ROBOT, role=Role.ROBOT, quarters=0), agent), BOX)
     person = PersonProblem(form, scene, 1.0, SolverOptions(compiled=False), SolverCache())
     raw = person.best_of_many(features["eta"] * stature - BOX.size[2] / 2.0, 0.0)
     assert raw is not None

@@ -40,7 +40,7 @@ def random_detail(problem: DesignProblem, seed: int, heights: tuple[float, ...] 
 
 
 def random_instant(scene: Scene, rng: np.random.Generator) -> InstantDetail:
-    agents = {agent.name: random_posture(agent, rng) for agent in (scene.robot, scene.human)}
+    agents = {agent.name: random_posture(agent, rng) for agent in scene.agents}
     return InstantDetail(time_s=0.0, agents=agents)
 
 

@@ -46,7 +46,7 @@ def test_links_stand_where_pinocchio_puts_them(problem: DesignProblem) -> None:
         for link in models.trees[agent.name].link_by_name:
             rotation, origin = state.pose(link)
             frame = stage.frames[agent.name][link]
-            mirrored = np.diag([agent.sign, agent.sign, 1.0])
+            mirrored = agent.turn
             assert np.allclose(mirrored @ origin, frame.translation, rtol=0.0, atol=1e-9)
             assert np.allclose(mirrored @ rotation, frame.rotation, rtol=0.0, atol=1e-9)
 
@@ -80,7 +80,7 @@ def test_moved_wrenches_have_the_logged_force_and_moment(problem: DesignProblem)
             assert (rotation.T @ lever)[2] == pytest.approx(0.0, abs=1e-12)
             hand = wrench_of(stage, agent.name, f"{side}_hand")
             assert hand.point == stage.frames[agent.name][agent.hands[side]].translation
-            sign = np.array([agent.sign, agent.sign, 1.0])
+            sign = np.diag(agent.turn)
             assert np.allclose([*(sign * hand.force), *(sign * hand.moment)], posture.hand_wrenches[side])
 
 

@@ -47,7 +47,7 @@ def held_with(problem: DesignProblem) -> Callable[[Grasp], Held]:
     @cache
     def found(grasp: Grasp) -> Held:
         scene = replace(problem.scene, payload=replace(problem.scene.payload, grasp=grasp))
-        agents = (scene.robot, scene.human)
+        agents = scene.agents
         models = {agent.name: AgentModel.of(agent, agent.tree) for agent in agents}
         setting = Setting(scene, problem.space, problem.weights, problem.options)
         design = problem.space.unscaled(scene.robot.tree)

@@ -33,7 +33,7 @@ def test_mass_centre_and_inertia_are_pinocchios(held: Held, who: str) -> None:
     body = model.body.model
     data = body.createData()
     pin.ccrba(body, data, state.coordinates, np.zeros(body.nv))
-    sign = np.array([model.agent.sign, model.agent.sign, 1.0])
+    sign = np.diag(model.agent.turn)
     root = found.agents[who].root
     assert found.model.body_subtreemass[root] == pytest.approx(data.Ig.mass, rel=1e-12)
     center = found.data.subtree_com[root]
@@ -61,7 +61,7 @@ def test_inverse_dynamics_asks_for_the_planned_torques_and_leaves_the_load_in_ba
     passed = np.zeros(model.nv)
     for name, parts in found.agents.items():
         posture = held.solution.postures[name]
-        sign = np.array([parts.agent.sign, parts.agent.sign, 1.0])
+        sign = np.diag(parts.agent.turn)
         for side in SIDES:
             hand, sole = parts.hands[side], parts.soles[side]
             force, moment = (sign * part for part in np.split(posture.hand_wrenches[side], 2))
@@ -102,7 +102,7 @@ def test_motors_have_the_limits_of_the_problem_or_of_actuators_and_their_inertia
     knee, elbow = law.at(30.0), "l_elbow"
     robot = replace(scene.robot, torque_limits={elbow: 7.0})
     trees = {**held.trees, "robot": with_actuators(scene.robot.tree, {"l_knee": knee})}
-    found = simulated_scene(replace(scene, robot=robot), trees, held.solution.postures, HEIGHT)
+    found = simulated_scene(scene.with_agents(robot), trees, held.solution.postures, HEIGHT)
 
     def limit(joint: str) -> float:
         motor = found.model.actuator(f"robot/{joint}")

@@ -72,7 +72,7 @@ def test_wrong_torques_and_motors_at_their_limit_are_seen(held: Held) -> None:
     robot = held.solution.postures["robot"]
     worst = max(robot.torques, key=lambda joint: abs(robot.torques[joint]))
     limited = replace(held.scene.robot, torque_limits={worst: 0.5 * abs(robot.torques[worst])})
-    weak = replace(held, scene=replace(held.scene, robot=limited))
+    weak = replace(held, scene=held.scene.with_agents(limited))
     _, outcome = holding(weak, 0.5)
     assert outcome.agents["robot"].at_limit == (worst,)
     assert outcome.agents["robot"].torque_share > 0.4
@@ -92,7 +92,7 @@ def test_a_lift_follows_its_path(lifted: Lifted) -> None:
     assert solution.course is not None
     plan = lift_plan(solution.course, STEP)
     assert plan.times[-1] == pytest.approx(solution.lift.seconds)
-    trees = {model.agent.name: model.tree for model in (lifted.robot, lifted.human)}
+    trees = {model.agent.name: model.tree for model in lifted.agents}
     outcome = outcome_of(plan, rolled_out(lifted.setting.scene, trees, plan, Feedback()))
     assert outcome.stands
     assert outcome.drift < 1e-2

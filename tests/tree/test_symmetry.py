@@ -106,7 +106,7 @@ def test_lopsided_body_is_named() -> None:
 
 
 def test_robot_and_person_pair_left_with_right(problem: DesignProblem) -> None:
-    robot, human = (mirror_of(agent.tree) for agent in (problem.scene.robot, problem.scene.human))
+    robot, human = (mirror_of(agent.tree) for agent in problem.scene.agents)
     assert all(robot.joints[name] == "r_" + name[2:] for name in robot.joints if name.startswith("l_"))
     assert all(human.joints[name] == name.replace("Left", "Right") for name in human.joints if "Left" in name)
 

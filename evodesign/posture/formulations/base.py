@@ -41,18 +41,20 @@ NO_PART_OF_PROGRAMS: Exceptions = {
         "options": "say how a program is solved",
         "lowest_asked": "is a parameter of the reach program",
     },
-    Scene: {"human": "only hands stand in for a person who has no body in the program"},
+    Scene: {"agents": "with a body they count by their forms; of the others, where they stand"},
     Payload: {"mass": "is a parameter of every program", "label": "is a word for results"},
     Agent: {"label": "is a word for results"},
     MeasuredPosture: {"drawn": "is a parameter of every program with the person's body"},
 }
 
 
-def program_key(formulation: str, *parts: object) -> str:
+def program_key(formulation: str, scene: Scene, *parts: object) -> str:
     """Digest of what a program follows from: all of it but the named exceptions.
 
     Args:
         formulation: its name.
-        parts: setting or scene, and the forms of agents with a body, who count with all that they are.
+        scene: in which all agents hold the load.
+        parts: the setting, and the forms of agents with a body, who count with all that they are.
     """
-    return digest((formulation, *parts), without=NO_PART_OF_PROGRAMS)
+    places = tuple((agent.name, agent.role, agent.quarters) for agent in scene.agents)
+    return digest((formulation, places, scene, *parts), without=NO_PART_OF_PROGRAMS)

@@ -76,7 +76,7 @@ class JointPostures:
 
     @cached_property
     def _solver(self) -> Solver:
-        key = program_key(self.name, self._setting, self._forms, self._kind.__qualname__)
+        key = program_key(self.name, self._setting.scene, self._setting, self._forms, self._kind.__qualname__)
         return self._solvers.solver(key, self._program, self._setting.options)
 
     @cached_property

@@ -140,7 +140,7 @@ class ReachProblem:
 
     @cached_property
     def _solver(self) -> Solver:
-        key = program_key(self.name, self._setting, self.form)
+        key = program_key(self.name, self._setting.scene, self._setting, self.form)
         return self._solvers.solver(key, self._program, self._setting.options)
 
     @cached_property
@@ -291,7 +291,7 @@ def _with_own_rows(setting: Setting) -> Setting:
     if robot.collisions is None:
         return setting
     robot = replace(robot, collisions=robot.collisions.at_reach)
-    return replace(setting, scene=replace(setting.scene, robot=robot))
+    return replace(setting, scene=setting.scene.with_agents(robot))
 
 
 def _best_settled(
@@ -363,7 +363,7 @@ def person_reach(scene: Scene, options: SolverOptions, *, symmetric: bool) -> Pe
     starts. Together with a robot's reach it gives the heights at which robot and everyone can hold the load.
     A person's own bodies may pass through each other here, and no measured posture draws the person.
     """
-    scene = replace(scene, human=replace(scene.human, collisions=None, measured=None))
+    scene = scene.with_agents(replace(scene.human, collisions=None, measured=None))
     form = symmetric_forms(scene)[1] if symmetric else whole(scene.human)
     solver = Solver(reach_program(form, form.agent.tree, scene, {}), options)
     ends: dict[float, float] = {}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from evodesign.identity import Exceptions, Met, code_digest, digest
-from evodesign.mechanics.scene import Agent, Payload, Scene, scene_of
+from evodesign.mechanics.scene import Agent, Payload, scene_of
 from evodesign.nlp.method import SolverOptions
 from evodesign.posture.precompute.plan import (
     Piece,
@@ -38,7 +38,6 @@ NO_PART_OF_A_PERSONS: Exceptions = {
         "space": "a person stands behind the load, whatever the robot's hardware",
         "lowest_asked": "says what is asked of robots",
     },
-    Scene: {"robot": "a person stands behind the load, whoever holds the other side"},
 }
 
 NO_PART_OF_DESIGNS: Exceptions = {
@@ -95,7 +94,10 @@ def keys_of(setting: PrecomputeSetting, pieces: Iterable[Piece]) -> dict[Piece, 
 def key_of(setting: PrecomputeSetting, piece: Piece, met: dict[int, Met] | None = None) -> str:
     """That of one piece; what was met for others, by what does not count in them, is not looked at again."""
     without = no_part_of(setting, piece)
-    data = (setting, setting.symmetric, scene_of(setting.scenes, piece.pair), piece)
+    scene = scene_of(setting.scenes, piece.pair)
+    if piece.subject is Subject.PERSON_REACH:  # a person stands behind the load, whoever holds the others
+        scene = scene.only(*scene.people)
+    data = (setting, setting.symmetric, scene, piece)
     code = code_digest(CODE_OF_LIFTS if piece.subject is Subject.LIFT else CODE)
     return digest((data, code), without=without, met=met if met is None else met.setdefault(id(without), {}))
 

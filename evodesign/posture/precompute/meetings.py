@@ -88,14 +88,13 @@ class _Finder:
         scene = setting.scene
         free = replace(
             scene.undisturbed,
-            robot=replace(scene.robot, collisions=None),
-            human=replace(scene.human, collisions=None),
+            agents=tuple(replace(agent, collisions=None) for agent in scene.agents),
         )
         options = replace(setting.options, seldom=True)
         self.scene, self._free = scene, free
         self.forms = symmetric_forms(free) if symmetric else (whole(free.robot), whole(free.human))
         self._setting, self._symmetric = replace(setting, scene=free, options=options), symmetric
-        self._robot, self._human = (AgentModel.of(agent, agent.tree) for agent in (scene.robot, scene.human))
+        self._robot, self._human = (AgentModel.of(agent, agent.tree) for agent in scene.agents)
         space = setting.space
         built = can_be_built(scene.robot, space)
 
@@ -174,4 +173,4 @@ def with_meetings(scene: Scene, found: Mapping[tuple[str, str], Sequence[BodyPai
             collisions=replace(rules, parted=rows(rules, agent.name), parted_at_reach=rows(rules, REACH)),
         )
 
-    return replace(scene, robot=parted(scene.robot), human=parted(scene.human))
+    return replace(scene, agents=tuple(parted(agent) for agent in scene.agents))

@@ -137,4 +137,4 @@ def _with_mean_person(scene: Scene) -> Scene:
     given = scene.human.measured
     if given is None or given.drawn == MEAN_PERSON:
         return scene
-    return replace(scene, human=replace(scene.human, measured=replace(given, drawn=MEAN_PERSON)))
+    return scene.with_agents(replace(scene.human, measured=replace(given, drawn=MEAN_PERSON)))

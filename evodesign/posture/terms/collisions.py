@@ -255,7 +255,7 @@ def residuals(system: MeasuredSystem) -> Iterator[Residual]:
     """How deep the deepest overlap is [m], by coal on the true shapes, of all that must not overlap."""
     if system.solids is None or system.disturbance is not UNDISTURBED:
         return
-    poses = {name: (body.agent.sign, body.state.poses) for name, body in system.bodies.items()}
+    poses = {name: (body.agent.turn, body.state.poses) for name, body in system.bodies.items()}
     overlaps = system.solids.near(poses, next(iter(system.bodies.values())).load_height)
     worst = min(overlaps, key=lambda gap: gap.distance, default=None)
     deep, who = (0.0, "bodies") if worst is None else (-worst.distance, f"{worst.first} and {worst.second}")

@@ -58,8 +58,8 @@ def any_load(scene: Scene) -> tuple[Scene, Expression]:
 
 
 def turned_to_world(agent: Agent, in_agent: Expression) -> Expression:
-    """A vector in world axes from one in the agent's frame, which is turned about z by 0 or 180 degrees."""
-    return in_agent * ca.DM([agent.sign, agent.sign, 1.0])
+    """A vector in world axes from one in the agent's frame, which is turned about z by quarter turns."""
+    return ca.sparsify(ca.DM(agent.turn)) @ in_agent
 
 
 def force_along_x(agent: Agent, hands: Mapping[str, Expression]) -> Expression:
@@ -107,7 +107,7 @@ def _disturbed(scene: Scene, disturbance: Disturbance) -> Scene:
 
 def _internal_force(coupled: Coupled) -> Expression:
     """X [N]; the load's balance makes it the robot's push where nothing else pushes."""
-    agents = (coupled.scene.robot, coupled.scene.human)
+    agents = coupled.scene.agents
     if coupled.disturbance is UNDISTURBED:
         return force_along_x(agents[0], coupled.hands[agents[0].name])
     robot, human = (force_along_x(agent, coupled.hands[agent.name]) for agent in agents)
@@ -124,7 +124,7 @@ def _unbalanced(coupled: Coupled, scene: Scene, force: Expression, weight: Expre
         weight: the part of it that acts at the centre of mass; the rest acts at the box's centre.
     """
     moment: Expression = ca.cross(vector(scene.payload.center_of_mass), weight)
-    for agent in (scene.robot, scene.human):
+    for agent in scene.agents:
         for side in SIDES:
             wrench = coupled.hands[agent.name][side]
             on_load = -turned_to_world(agent, wrench[:3])
@@ -142,9 +142,9 @@ def residuals(system: MeasuredSystem) -> Iterator[Residual]:
     weight = np.array([0.0, 0.0, -(GRAVITY + system.load_acceleration) * payload.mass])
     force, moment = weight + outside, pin.skew(np.array(payload.center_of_mass)) @ weight
     passed, carried = 0.0, 0.0
-    along_x = {agent.name: 0.0 for agent in (scene.robot, scene.human)}
-    for agent in (scene.robot, scene.human):
-        world_from_agent = pin.rpy.rpyToMatrix(0.0, 0.0, agent.facing)
+    along_x = {agent.name: 0.0 for agent in scene.agents}
+    for agent in scene.agents:
+        world_from_agent = agent.turn
         for side in SIDES:
             wrench = system.bodies[agent.name].posture.hand_wrenches[side]
             on_load = -world_from_agent @ wrench[:3]

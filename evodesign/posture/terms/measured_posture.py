@@ -44,7 +44,7 @@ def any_person(scene: Scene) -> tuple[Scene, Mapping[str, Expression]]:
         return scene, {}
     drawn: Any = ca.SX.sym(DRAWN, len(FEATURES))
     human = replace(scene.human, measured=replace(given, drawn=drawn))
-    return replace(scene, human=human), {DRAWN: drawn}
+    return scene.with_agents(human), {DRAWN: drawn}
 
 
 def person_parameters(scene: Scene) -> Mapping[str, tuple[float, ...]]:

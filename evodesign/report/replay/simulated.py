@@ -64,7 +64,7 @@ def _detail(simulation: SimulatedCase, frame: int, place: int) -> CaseDetail:
     rollout, (person, payload) = simulation.rollout, simulation.scene.pair
     agents = {
         agent.name: _posture(agent, rollout.agents[agent.name], frame, place)
-        for agent in (simulation.scene.robot, simulation.scene.human)
+        for agent in simulation.scene.agents
     }
     task = Hold(height_m=float(simulation.plan.heights[place]))
     case = Case(person=person, payload=payload, task=task)

@@ -183,7 +183,7 @@ def test_centres_of_pressure_are_where_the_ground_pushes(
 
 def test_limits_of_torques_are_told_beside_the_joints(problem: DesignProblem) -> None:
     robot = replace(problem.scene.robot, torque_limits={"l_knee": 40.0}, limits_torques=True)
-    limited = [replace(scene, robot=robot) for scene in problem.scenes]
+    limited = [scene.with_agents(robot) for scene in problem.scenes]
     cases = [moved(problem)]
     assert StaticTorques(limited).of(robot.tree, cases)[1] == {"l_knee": 40.0}
     assert StaticTorques(problem.scenes).of(robot.tree, cases)[1] == {}

@@ -119,7 +119,7 @@ def test_frames_stand_where_pinocchio_puts_the_links(replay: Replay) -> None:
         for agent in replay.models.agents:
             tree = replay.models.trees[agent.name]
             state = AgentModel.of(agent, tree).at(logged_posture(detail.agents[agent.name]))
-            turn = np.diag([agent.sign, agent.sign, 1.0])
+            turn = agent.turn
             for link in tree.link_by_name:
                 rotation, origin = state.pose(link)
                 found = world_from[f"{agent.name}/{link}"]
