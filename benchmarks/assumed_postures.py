@@ -262,7 +262,7 @@ def with_more(source: ProblemSource) -> ProblemSource:
 def palms(scene: Scene, tasks: Iterable[Task]) -> list[float]:
     """Heights of the person's palms in holds, over stature."""
     stature = scene.human.measured.stature if scene.human.measured else math.nan
-    grasp = scene.payload.grasp_point(scene.human, "left")[2]
+    grasp = scene.payload.grasp_point(scene.human, scene.human.hands[0])[2]
     return [(task.height_m + grasp) / stature for task in tasks if isinstance(task, Hold)]
 
 

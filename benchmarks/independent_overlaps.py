@@ -297,7 +297,7 @@ class Judge:
         box = coal.Box(*scene.payload.size)
         load = [("load", box, coal.Transform3s(np.eye(3), np.array([0.0, 0.0, case.height_m])))]
         for who, body, agent in (("robot", robot, scene.robot), ("human", person, scene.human)):
-            hands = {link for hand in agent.hands.values() for link in _up(body.above, hand)}
+            hands = {link for hand in agent.hand_frames for link in _up(body.above, hand)}
             for (link, _), depth in overlaps(placed[who], load).items():
                 if not any(near in hands for near in _up(body.above, link)):
                     found[f"{who} {link}", "load"] = depth

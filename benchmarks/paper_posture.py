@@ -134,7 +134,7 @@ class _Part:
 
 def _part(agent: Agent, tree: Tree, scene: Scene, design: Expression, height: Expression) -> _Part:
     form = whole(agent)
-    parties = (Embodied(form, tree), free_hands_beside(form))
+    parties = (Embodied(form, tree), *free_hands_beside(form, scene))
     assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height,)))
     variables = {v.key.part: v for v in assembly.variables if v.key.party == agent.name}
     posture = ca.vertcat(*[variables[name].value for name in POSTURE])

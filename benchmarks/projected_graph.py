@@ -102,12 +102,13 @@ def agent_matrices(agent: Agent, tree: Tree, scene: Scene, design: Expression) -
     blocks = ca.vertsplit(free, [0, *(sum(rows[: end + 1]) for end in range(len(rows)))])
     applied = []
     for side, wrench in zip(SIDES, blocks[:2], strict=True):
-        sole = poses[agent.soles[side]]
+        sole = poses[agent.frame(f"{side}_foot")]
         parts = (sole.rotation @ wrench[:3], sole.rotation @ wrench[3:])
-        applied.append(AppliedWrench(agent.soles[side], sole.position, *parts))
+        applied.append(AppliedWrench(agent.frame(f"{side}_foot"), sole.position, *parts))
     for side, wrench in zip(SIDES, blocks[2:], strict=True):
         six = hand_wrench(wrench)
-        applied.append(AppliedWrench(agent.hands[side], poses[agent.hands[side]].position, six[:3], six[3:]))
+        frame = agent.frame(f"{side}_hand")
+        applied.append(AppliedWrench(frame, poses[frame].position, six[:3], six[3:]))
     needed = _needed(tree, agent.joints, base, poses, applied)
     mass = mass_matrix(tree, agent.joints, positions)
     matrices = [mass, *_split(needed, free)]
@@ -157,7 +158,7 @@ def _load(scene: Scene) -> _Body:
 def _on_load(payload: Payload, agent: Agent, side: str, wrench: Expression) -> AppliedWrench:
     """The reaction to a hand's wrench, in the world."""
     turn = ca.DM(agent.turn)
-    point = turn @ vector(payload.grasp_point(agent, side))
+    point = turn @ vector(payload.grasp_point(agent, next(each for each in agent.hands if each.side == side)))
     return AppliedWrench(PAYLOAD, point, -turn @ wrench[:3], -turn @ wrench[3:])
 
 

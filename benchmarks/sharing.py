@@ -65,7 +65,7 @@ def sweep(problem: DesignProblem, allocation: str, height: float, starts: int) -
         )
         if max(sizes(checker.residuals(instant, height)).values()) > TOLERANCE:
             raise AssertionError(f"the check refuses {allocation} {value:g} at {height:g} m")
-        carried = -sum(wrench[2] for wrench in found[ROBOT].hand_wrenches.values())
+        carried = -sum(found[ROBOT].wrenches[hand.name][2] for hand in scene.robot.hands)
         share = carried / (GRAVITY * scene.payload.mass)
         yield found[ROBOT].torque_norm, found[HUMAN].torque_norm, float(share)
 

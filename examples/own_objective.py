@@ -17,7 +17,8 @@ from evodesign.quantities.design_result import CaseQuantity
 
 def larger_foot_force(scene, postures):
     """The robot's larger foot force [N] in one posture: the mean over the heights is the objective."""
-    return max(float(wrench[2]) for wrench in postures["robot"].foot_wrenches.values())
+    wrenches = postures["robot"].wrenches
+    return max(float(wrenches[name][2]) for name in ("left_foot", "right_foot"))
 
 
 foot_force = CaseQuantity("N", larger_foot_force)

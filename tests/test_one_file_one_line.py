@@ -26,7 +26,7 @@ from evodesign.searches.registry import SEARCHES, make_search
 
 def foot_force(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
     """The robot's larger foot force [N]."""
-    return max(float(postures[ROBOT].foot_wrenches[side][2]) for side in SIDES)
+    return max(float(postures[ROBOT].wrenches[f"{side}_foot"][2]) for side in SIDES)
 
 
 @pytest.mark.slow

@@ -44,19 +44,19 @@ JOINED, STILL = "joined by a joint", "no joint moves between them"
 
 
 def checked_pairs(
-    tree: Tree, joints: Collection[str], hands: Mapping[str, str], soles: Mapping[str, str]
+    tree: Tree, joints: Collection[str], hands: Iterable[str], soles: Iterable[str]
 ) -> tuple[BodyPair, ...]:
     """Pairs of links, and of links with load, floor and partner, that must not overlap, in the tree's order.
 
     Args:
         tree: of the agent, unscaled.
         joints: that move; the others stand at zero.
-        hands: frames at the grasps, by side.
-        soles: frames under the feet, by side.
+        hands: frames at the grasps.
+        soles: frames under the feet.
     """
     names = tuple(dict.fromkeys(SolidBodies.of_tree(tree).names))
     holding = holding_links(tree, joints, hands)
-    standing = {link for sole in soles.values() for link in _foot(tree, joints, sole)}
+    standing = {link for sole in soles for link in _foot(tree, joints, sole)}
     return (
         *collision_pairs(tree, joints),
         *((name, LOAD) for name in names if name not in holding),
@@ -145,32 +145,32 @@ def built_in_pairs(
 
 
 def feet_pairs(
-    tree: Tree, joints: Collection[str], soles: Mapping[str, str], checked: Collection[BodyPair]
+    tree: Tree, joints: Collection[str], soles: Iterable[str], checked: Collection[BodyPair]
 ) -> tuple[BodyPair, ...]:
     """Each part of a foot with that of the other foot, of the pairs that must not overlap.
 
     Args:
         tree: of the agent.
         joints: that move.
-        soles: frames under the feet, by side.
+        soles: frames under the feet.
         checked: pairs that must not overlap.
     """
-    feet = [[*_foot(tree, joints, sole)] for sole in soles.values()]
+    feet = [[*_foot(tree, joints, sole)] for sole in soles]
     both = {frozenset(pair) for one, other in combinations(feet, 2) for pair in zip(one, other, strict=False)}
     return tuple(pair for pair in checked if frozenset(pair) in both)
 
 
-def holding_links(tree: Tree, joints: Collection[str], hands: Mapping[str, str]) -> frozenset[str]:
+def holding_links(tree: Tree, joints: Collection[str], hands: Iterable[str]) -> frozenset[str]:
     """Links that may touch the load: those of hands, and the links near the grasp.
 
     Args:
         tree: of the agent, unscaled.
         joints: that move.
-        hands: frames at the grasp, by side.
+        hands: frames at the grasp.
     """
     frames = link_frames(tree, Placement(), {})
     found: set[str] = set()
-    for hand in hands.values():
+    for hand in hands:
         grasp, name = np.array(frames[hand].translation, float), hand
         while np.linalg.norm(np.array(frames[name].translation, float) - grasp) < HAND:
             found |= {name, *_still_below(tree, joints, name)}

@@ -93,7 +93,8 @@ class Clearances:
         if agent.collisions is not None:
             return agent.collisions.checked
         if id(agent.tree) not in self._own:
-            self._own[id(agent.tree)] = checked_pairs(agent.tree, agent.joints, agent.hands, agent.soles)
+            ends = agent.hand_frames, agent.foot_frames
+            self._own[id(agent.tree)] = checked_pairs(agent.tree, agent.joints, *ends)
         return self._own[id(agent.tree)]
 
 

@@ -225,8 +225,7 @@ def _instant_detail(instant: Instant) -> InstantDetail:
             base_rpy_rad=tuple(posture.base_angles.tolist()),
             joints_rad=dict(posture.joints),
             torques_n_m=dict(posture.torques),
-            hand_wrenches=_numbers(posture.hand_wrenches),
-            foot_wrenches=_numbers(posture.foot_wrenches),
+            wrenches=_numbers(posture.wrenches),
             speeds_rad_s=dict(posture.speeds),
         )
         for name, posture in instant.postures.items()
@@ -243,8 +242,7 @@ def _instant_detail(instant: Instant) -> InstantDetail:
 def _load_case(posture: AgentPosture) -> LoadCaseDetail:
     return LoadCaseDetail(
         torques_n_m=dict(posture.torques),
-        hand_wrenches=_numbers(posture.hand_wrenches),
-        foot_wrenches=_numbers(posture.foot_wrenches),
+        wrenches=_numbers(posture.wrenches),
     )
 
 

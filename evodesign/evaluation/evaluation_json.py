@@ -56,7 +56,7 @@ from evodesign.collision.clearance import BodyDistance
 from evodesign.evaluation.bill import bill_of_materials
 from evodesign.evaluation.clearance import distance_json, solved_distances
 from evodesign.evaluation.sensitivities import ObjectiveSensitivity
-from evodesign.mechanics.scene import HUMAN, SIDES
+from evodesign.mechanics.scene import HUMAN
 from evodesign.posture.results import AgentPosture, CaseSolution, Instant
 from evodesign.problem.build import DesignProblem
 from evodesign.quantities.design_result import DesignResult
@@ -192,9 +192,7 @@ def _agent(posture: AgentPosture) -> dict[str, Any]:
 
 
 def _wrenches(posture: AgentPosture) -> dict[str, list[float]]:
-    hands = {f"{side}_hand": posture.hand_wrenches[side].tolist() for side in SIDES}
-    feet = {f"{side}_foot": posture.foot_wrenches[side].tolist() for side in SIDES}
-    return {**hands, **feet}
+    return {name: wrench.tolist() for name, wrench in posture.wrenches.items()}
 
 
 def _solver(solution: CaseSolution) -> dict[str, Any]:

@@ -16,6 +16,5 @@ def logged_posture(own: AgentDetail, disturbed: LoadCaseDetail | None = None) ->
         base_angles=np.array(own.base_rpy_rad),
         joints=own.joints_rad,
         torques=carried.torques_n_m,
-        hand_wrenches={side: np.array(wrench) for side, wrench in carried.hand_wrenches.items()},
-        foot_wrenches={side: np.array(wrench) for side, wrench in carried.foot_wrenches.items()},
+        wrenches={name: np.array(wrench) for name, wrench in carried.wrenches.items()},
     )

@@ -88,7 +88,7 @@ def held_heights(text: str, urdf: str, tree: Tree) -> HeldHeights | None:
 def _ends(problem: DesignProblem) -> list[tuple[float, float] | None]:
     """The lowest and the highest load of the robot and of each person; None for who holds nothing."""
     scenes, robot = problem.scenes, problem.scene.robot
-    frames = (*robot.hands.values(), *robot.soles.values(), *robot.trunk)
+    frames = (*(contact.frame for contact in robot.contacts), *robot.trunk)
     bare = replace(robot, tree=without_frames(robot.tree, frames))
     alone = replace(problem, scenes=tuple(scene.with_agents(bare) for scene in scenes), whole_reach=True)
     unscaled = problem.space.unscaled(robot.tree)
@@ -105,5 +105,5 @@ def _both(lowest: float | None, highest: float | None) -> tuple[float, float] | 
 def _hanging(person: Agent) -> float:
     """Height of a generated person's hands above the soles where the arms hang [m]."""
     frames = link_frames(person.tree, Placement(), {})
-    hand, shoulder = (frames[name].translation for name in (person.hands["left"], SHOULDER))
-    return float(shoulder[2] - math.dist(shoulder, hand) - frames[person.soles["left"]].translation[2])
+    hand, shoulder = (frames[name].translation for name in (person.frame("left_hand"), SHOULDER))
+    return float(shoulder[2] - math.dist(shoulder, hand) - frames[person.frame("left_foot")].translation[2])

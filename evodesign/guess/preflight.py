@@ -81,11 +81,11 @@ def _tried(name: str, item: Callable[[], str]) -> Finding:
 
 
 def _stands(robot: Agent, welded: WeldedTree) -> str:
-    bodies = [welded.body_of(robot.soles[side]) for side in SIDES]
+    bodies = [welded.body_of(robot.frame(f"{side}_foot")) for side in SIDES]
     if bodies[0] is bodies[1]:
         wanted = "frames under two feet that move against each other"
         raise InputError("robot.soles", "", wanted, f"two of '{bodies[0].name}'")
-    places = [welded.places[robot.soles[side]] for side in SIDES]
+    places = [welded.places[robot.frame(f"{side}_foot")] for side in SIDES]
     middle = [(a + b) / 2.0 for a, b in zip(*(place.translation for place in places), strict=True)]
     center = total([body.inertia for body in welded.bodies.values() if body.inertia.mass]).center
     up = float(center[2] - middle[2]) / max(math.dist(center, middle), 1e-9)
@@ -97,7 +97,7 @@ def _stands(robot: Agent, welded: WeldedTree) -> str:
         if place.rotation[2][2] < UPRIGHT:
             wanted = "a frame with z up and x ahead under the foot, such as one of [[robot.frames]]"
             raise InputError(
-                f"robot.soles.{side}", "", wanted, f"'{robot.soles[side]}', whose z axis is not up"
+                f"robot.soles.{side}", "", wanted, f"'{robot.frame(f'{side}_foot')}', whose z axis is not up"
             )
     above = abs(places[0].translation[2] - places[1].translation[2])
     if above > UNEVEN:
@@ -128,7 +128,7 @@ def _faces(problem: DesignProblem) -> str:
 
 
 def _hands(robot: Agent, welded: WeldedTree) -> str:
-    bodies = {side: welded.body_of(robot.hands[side]) for side in SIDES}
+    bodies = {side: welded.body_of(robot.frame(f"{side}_hand")) for side in SIDES}
     if bodies["left"] is bodies["right"]:
         wanted = "frames in two hands that move against each other"
         raise InputError("robot.hands", "", wanted, f"two of '{bodies['left'].name}'")
@@ -138,9 +138,9 @@ def _hands(robot: Agent, welded: WeldedTree) -> str:
         moving = sum(each.joint is not None and each.joint.name in robot.joints for each in chain)
         if moving < FEWEST_JOINTS:
             wanted = f"a hand with at least {FEWEST_JOINTS} of robot.joints between it and the trunk"
-            found = f"{moving} before '{robot.hands[side]}'"
+            found = f"{moving} before '{robot.frame(f'{side}_hand')}'"
             raise InputError(f"robot.hands.{side}", "", wanted, found)
-    left, right = (welded.places[robot.hands[side]].translation for side in SIDES)
+    left, right = (welded.places[robot.frame(f"{side}_hand")].translation for side in SIDES)
     _refuse_exchanged("robot.hands", left, right)
     return f"{math.dist(left, right):.2f} m apart"
 
@@ -178,7 +178,7 @@ def _changes(problem: DesignProblem, before: WeldedTree, index: int) -> str:
     mass = _mass(after) - _mass(before.tree)
     moved = {
         name: 1000.0 * math.dist(before.places[link].translation, _place(after, link).translation)
-        for name, link in (("hands", robot.hands["left"]), ("soles", robot.soles["left"]))
+        for name, link in (("hands", robot.frame("left_hand")), ("soles", robot.frame("left_foot")))
     }
     parts = [f"{name} by {distance:.0f} mm" for name, distance in moved.items() if distance >= 0.5]
     if not parts and abs(mass) < LEAST_CHANGE:
@@ -199,7 +199,7 @@ def _place(tree: Tree, link: str) -> Placement:
 def _holds(problem: DesignProblem) -> str:
     options = replace(problem.options, compiled=False)
     scene, robot = problem.scene, problem.scene.robot
-    frames = (*robot.hands.values(), *robot.soles.values(), *robot.trunk)
+    frames = (*(contact.frame for contact in robot.contacts), *robot.trunk)
     bare = replace(robot, tree=without_frames(robot.tree, frames), collisions=None)
     alone = replace(
         problem,

@@ -18,14 +18,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from enum import StrEnum
 from types import MappingProxyType
 
 import numpy as np
 import scipy
 
 from evodesign.mechanics.floating_base import ROOT, Array, BodyState, Configuration, FloatingBody
-from evodesign.mechanics.scene import SIDES, Agent, Grasp, Role, Scene
+from evodesign.mechanics.scene import Agent, Contact, Grasp, Role, Scene, Touched
 from evodesign.tree.model import Tree
 
 PAYLOAD = "payload"
@@ -40,20 +39,12 @@ def level_load(height: float) -> Configuration:
     return Configuration(np.array([0.0, 0.0, height]), np.zeros(3))
 
 
-class ContactKind(StrEnum):
-    """What touches: a foot the ground, or a hand the load."""
-
-    FOOT = "foot"
-    HAND = "hand"
-
-
 @dataclass(frozen=True, slots=True)
-class Contact:
-    """A contact and its rows in Q and f."""
+class ContactRows:
+    """A contact of an agent and its rows in Q and f."""
 
     agent: str
-    kind: ContactKind
-    side: str
+    contact: Contact
     rows: slice
 
 
@@ -77,11 +68,11 @@ class CoupledSystem:
     coupling: Array
     drift: Array
     joints: tuple[tuple[str, str], ...]
-    contacts: tuple[Contact, ...]
+    contacts: tuple[ContactRows, ...]
 
-    def wrenches_of(self, agent: str, kind: ContactKind, wrenches: Array) -> dict[str, Array]:
-        """An agent's part of f at its feet or hands [N, N m], by side."""
-        return {c.side: wrenches[c.rows] for c in self.contacts if (c.agent, c.kind) == (agent, kind)}
+    def wrenches_of(self, agent: str, wrenches: Array) -> dict[str, Array]:
+        """An agent's part of f [N, N m], by the names of its contacts."""
+        return {each.contact.name: wrenches[each.rows] for each in self.contacts if each.agent == agent}
 
 
 class CoupledModel:
@@ -98,9 +89,9 @@ class CoupledModel:
         self._agents = scene.agents
         trees = [(agent, robot_tree if agent.role is Role.ROBOT else agent.tree) for agent in self._agents]
         grasps = {
-            _grasp(agent, side): _world_from_agent(agent) @ np.array(scene.payload.grasp_point(agent, side))
+            _grasp(agent, hand): _world_from_agent(agent) @ np.array(scene.payload.grasp_point(agent, hand))
             for agent in self._agents
-            for side in SIDES
+            for hand in agent.hands
         }
         self._bodies = {
             **{
@@ -123,11 +114,11 @@ class CoupledModel:
             name: body.at(configurations[name], velocities.get(name, np.zeros(body.size)))
             for name, body in self._bodies.items()
         }
-        rows = [self._rows(states, agent, kind, side) for agent, kind, side in self._places()]
+        rows = [self._rows(states, agent, contact) for agent, contact in self._places()]
         ends = np.cumsum([len(drift) for _, drift in rows])
         contacts = tuple(
-            Contact(agent.name, kind, side, slice(end - len(drift), end))
-            for (agent, kind, side), (_, drift), end in zip(self._places(), rows, ends.tolist(), strict=True)
+            ContactRows(agent.name, contact, slice(end - len(drift), end))
+            for (agent, contact), (_, drift), end in zip(self._places(), rows, ends.tolist(), strict=True)
         )
         return CoupledSystem(
             mass=scipy.linalg.block_diag(*[state.mass for state in states.values()]),
@@ -139,29 +130,27 @@ class CoupledModel:
             contacts=contacts,
         )
 
-    def _places(self) -> list[tuple[Agent, ContactKind, str]]:
-        """Every contact in the order of its rows: an agent's feet, then its hands, robot first."""
-        return [(agent, kind, side) for agent in self._agents for kind in ContactKind for side in SIDES]
+    def _places(self) -> list[tuple[Agent, Contact]]:
+        """Every contact in the order of its rows."""
+        return [(agent, contact) for agent in self._agents for contact in agent.contacts]
 
-    def _rows(
-        self, states: Mapping[str, BodyState], agent: Agent, kind: ContactKind, side: str
-    ) -> tuple[Array, Array]:
+    def _rows(self, states: Mapping[str, BodyState], agent: Agent, contact: Contact) -> tuple[Array, Array]:
         """A contact's rows of Q and of dQ/dt nu."""
         blocks = {name: np.zeros((ROOT, body.size)) for name, body in self._bodies.items()}
-        if kind is ContactKind.FOOT:
-            blocks[agent.name], drift = states[agent.name].twist_in_frame(agent.soles[side])
+        if contact.touched is Touched.GROUND:
+            blocks[agent.name], drift = states[agent.name].twist_in_frame(contact.frame)
             return np.hstack(list(blocks.values())), drift
         agent_from_world = np.kron(np.eye(2), _world_from_agent(agent).T)[: self._hand_rows]
-        hand, hand_drift = states[agent.name].twist_in_world(agent.hands[side])
-        grasp, grasp_drift = states[PAYLOAD].twist_in_world(_grasp(agent, side))
+        hand, hand_drift = states[agent.name].twist_in_world(contact.frame)
+        grasp, grasp_drift = states[PAYLOAD].twist_in_world(_grasp(agent, contact))
         blocks[agent.name], blocks[PAYLOAD] = hand, -grasp
         jacobian = agent_from_world @ np.hstack(list(blocks.values()))
         return np.asarray(jacobian), np.asarray(agent_from_world @ (hand_drift - grasp_drift))
 
 
-def _grasp(agent: Agent, side: str) -> str:
+def _grasp(agent: Agent, hand: Contact) -> str:
     """Name of the load's frame at a hand."""
-    return f"{agent.name}_{side}_grasp"
+    return f"{agent.name}_{hand.name}_grasp"
 
 
 def _world_from_agent(agent: Agent) -> Array:

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from evodesign.body.placement import Vector, dot, scale
-from evodesign.mechanics.scene import SIDES, Agent
+from evodesign.mechanics.scene import Agent, Contact
 from evodesign.tree.model import Joint, JointKind, Tree
 
 REACH = 0.45
@@ -37,17 +37,17 @@ class Elbow:
     place: Vector
 
 
-def elbow(agent: Agent, side: str) -> Elbow | None:
+def elbow(agent: Agent, holding: Contact) -> Elbow | None:
     """The elbow of an arm; None if no joint between the trunk and the hand turns.
 
     Args:
         agent: whose arm it is, with the unscaled tree: lengths do not change which joint bends the arm.
-        side: left or right.
+        holding: its contact with the load.
     """
-    (other,) = (agent.hands[each] for each in SIDES if each != side)
-    shared = {joint.name for joint in _above(agent.tree, other)}
+    others = [hand.frame for hand in agent.hands if hand != holding]
+    shared = {joint.name for other in others for joint in _above(agent.tree, other)}
     hand, found = ORIGIN, list[tuple[float, Elbow]]()
-    for joint in _above(agent.tree, agent.hands[side]):
+    for joint in _above(agent.tree, holding.frame):
         if joint.name in agent.joints and joint.name not in shared and joint.kind is not JointKind.PRISMATIC:
             place = scale(dot(joint.axis, hand), joint.axis)
             found.append((math.dist(hand, place), Elbow(joint.name, joint.child, place)))

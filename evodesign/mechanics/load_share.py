@@ -14,7 +14,7 @@ import scipy
 from numpy.typing import NDArray
 
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import SIDES, Agent, Grasp, Scene
+from evodesign.mechanics.scene import Agent, Contact, Grasp, Role, Scene
 
 Array = NDArray[np.float64]
 
@@ -27,10 +27,10 @@ def share_interval(scene: Scene) -> tuple[float, float]:
     payload = scene.payload
     weight = payload.mass * GRAVITY
     largest = 0.0 if payload.grasp is Grasp.POINT else payload.hand_moment
-    hands = [(agent, side) for agent in scene.agents for side in SIDES]
-    balance = np.hstack([_on_load(scene, agent, side) for agent, side in hands])
+    hands = [(agent, hand) for agent in scene.agents for hand in agent.hands]
+    balance = np.hstack([_on_load(scene, agent, hand) for agent, hand in hands])
     loaded = weight * np.array([0.0, 0.0, 1.0, *np.cross(payload.center_of_mass, [0.0, 0.0, 1.0])])
-    carried, push = (_of_robot(hands, row) for row in (2, 0))
+    carried, push = (_of_robots(hands, row) for row in (2, 0))
     outcomes = [
         scipy.optimize.linprog(
             sign * carried,
@@ -48,17 +48,15 @@ def share_interval(scene: Scene) -> tuple[float, float]:
     return low, high
 
 
-def _on_load(scene: Scene, agent: Agent, side: str) -> Array:
+def _on_load(scene: Scene, agent: Agent, hand: Contact) -> Array:
     """Force and moment on the load (world, box's centre) of a hand's force and moment, shape (6, 6)."""
-    x, y, z = agent.turn @ scene.payload.grasp_point(agent, side)
+    x, y, z = agent.turn @ scene.payload.grasp_point(agent, hand)
     lever = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     return np.block([[np.eye(3), np.zeros((3, 3))], [lever, np.eye(3)]])
 
 
-def _of_robot(hands: list[tuple[Agent, str]], row: int) -> Array:
-    """Sums one component of the force over the robot's hands, shape (24,)."""
+def _of_robots(hands: list[tuple[Agent, Contact]], row: int) -> Array:
+    """Sums one component of the force over the hands of robots, shape (6 x hands,)."""
     picked = np.zeros(6)
     picked[row] = 1.0
-    return np.concatenate(
-        [picked if position < len(SIDES) else np.zeros(6) for position in range(len(hands))]
-    )
+    return np.concatenate([picked * (agent.role is Role.ROBOT) for agent, _ in hands])

@@ -22,14 +22,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.mechanics.balance import AppliedWrench, cut
-from evodesign.mechanics.scene import SIDES, Agent
+from evodesign.mechanics.scene import Agent
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Link, Tree
 
 Array = NDArray[np.float64]
 
-BASE, HANDS = 6, 12
-"""Rows of the base, before those of the joints; columns of the hands, before those of the feet."""
+BASE = 6
+"""Rows of the base, before those of the joints; columns of the hands stand before those of the feet."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,8 +37,8 @@ class _Statics:
     """What wrenches on hands and feet ask of base and joints.
 
     Args:
-        rows: from base angles and joints [rad] to the matrix of B and T, shape (6 + joints, 24).
-        slope: from these, wrenches (24,) and weights of the rows to the derivatives of the weighted sum by
+        rows: from base angles and joints [rad] to the matrix of B and T, shape (6 + joints, 6 x contacts).
+        slope: from these, wrenches and weights of the rows to the derivatives of the weighted sum by
             angles and joints, shape (3 + joints,).
     """
 
@@ -50,7 +50,8 @@ class _Statics:
 def _statics(tree: Tree, joints: tuple[str, ...], hands: tuple[str, ...], soles: tuple[str, ...]) -> _Statics:
     weightless = replace(tree, links=tuple(Link(link.name) for link in tree.links))
     angles, turns = ca.SX.sym("angles", 3), ca.SX.sym("joints", len(joints))
-    wrenches, weights = ca.SX.sym("wrenches", 24), ca.SX.sym("weights", BASE + len(joints))
+    wrenches = ca.SX.sym("wrenches", 6 * len((*hands, *soles)))
+    weights = ca.SX.sym("weights", BASE + len(joints))
     base = Pose(euler_rotation(angles), ca.DM.zeros(3))
     poses = forward(weightless, base, dict(zip(joints, ca.vertsplit(turns), strict=True)))
     applied = []
@@ -76,7 +77,7 @@ class NormSlopes:
     Args:
         angles: by the base's roll, pitch and yaw [N m/rad], shape (3,).
         joints: by the joints' positions [N m/rad], shape (joints,).
-        hands: by the wrenches on both hands, shape (12,).
+        hands: by the wrenches on the hands, shape (6 x hands,).
     """
 
     angles: Array
@@ -90,9 +91,9 @@ class LoadTorques:
 
     Args:
         torques: [N m], shape (joints,).
-        wrenches: of hands and feet [N, N m], shape (24,).
+        wrenches: of hands and feet [N, N m], shape (6 x contacts,).
         multipliers: of the base's rows, shape (6,).
-        rows: of base and joints, shape (6 + joints, 24).
+        rows: of base and joints, shape (6 + joints, 6 x contacts).
         posture: base angles and joints [rad].
         statics: of the agent.
     """
@@ -103,6 +104,7 @@ class LoadTorques:
     rows: Array
     posture: tuple[Array, Array]
     statics: _Statics
+    hands: int
 
     @property
     def norm(self) -> float:
@@ -113,7 +115,7 @@ class LoadTorques:
         """How the norm moves with the posture; not at all where the hands pass nothing."""
         weights = np.concatenate([self.multipliers, self.torques]) / (self.norm or 1.0)
         found = np.array(self.statics.slope(*self.posture, self.wrenches, weights)).ravel()
-        return NormSlopes(found[:3], found[3:], self.rows[:, :HANDS].T @ weights)
+        return NormSlopes(found[:3], found[3:], self.rows[:, : self.hands].T @ weights)
 
 
 def load_torques(agent: Agent, angles: Array, joints: Array, hands: Array) -> LoadTorques:
@@ -123,15 +125,16 @@ def load_torques(agent: Agent, angles: Array, joints: Array, hands: Array) -> Lo
         agent: with a tree of numbers.
         angles: roll, pitch, yaw of the base in the agent's frame [rad], shape (3,).
         joints: positions in the agent's order [rad].
-        hands: wrenches on the left and the right hand, about its origin in the agent's frame, shape (12,).
+        hands: wrenches on the hands, about the origin of each in the agent's frame, shape (6 x hands,).
     """
-    frames = (tuple(of[side] for side in SIDES) for of in (agent.hands, agent.soles))
-    statics = _statics(agent.tree, agent.joints, *frames)
+    statics = _statics(agent.tree, agent.joints, agent.hand_frames, agent.foot_frames)
     rows = np.array(statics.rows(angles, joints))
     base, torques = rows[:BASE], rows[BASE:]
-    by_feet, of_base = torques[:, HANDS:], base[:, HANDS:]
+    count = len(hands)
+    by_feet, of_base = torques[:, count:], base[:, count:]
     stationary = np.block([[by_feet.T @ by_feet, of_base.T], [of_base, np.zeros((BASE, BASE))]])
-    asked = np.concatenate([by_feet.T @ torques[:, :HANDS] @ hands, base[:, :HANDS] @ hands])
+    asked = np.concatenate([by_feet.T @ torques[:, :count] @ hands, base[:, :count] @ hands])
     found = np.linalg.lstsq(stationary, -asked, rcond=None)[0]
-    wrenches = np.concatenate([hands, found[:HANDS]])
-    return LoadTorques(torques @ wrenches, wrenches, found[HANDS:], rows, (angles, joints), statics)
+    feet = by_feet.shape[1]
+    wrenches = np.concatenate([hands, found[:feet]])
+    return LoadTorques(torques @ wrenches, wrenches, found[feet:], rows, (angles, joints), statics, count)

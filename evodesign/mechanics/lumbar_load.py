@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from evodesign.human.back import FLEXION, LUMBAR, MUSCLE_LEVER
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import SIDES, Agent
+from evodesign.mechanics.scene import Agent
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Tree
 
@@ -42,7 +42,7 @@ def _through_disc(tree: Tree, joints: tuple[str, ...], soles: tuple[str, ...]) -
     The Jacobian is by all three, shape (3, 15 + joints).
     """
     angles, turns = ca.SX.sym("angles", 3), ca.SX.sym("joints", len(joints))
-    feet = ca.SX.sym("feet", 12)
+    feet = ca.SX.sym("feet", 6 * len(soles))
     base = Pose(euler_rotation(angles), ca.DM.zeros(3))
     poses = forward(tree, base, dict(zip(joints, ca.vertsplit(turns), strict=True)))
     vertebra = [joint.child for joint in tree.joints if joint.name.startswith(LUMBAR)][-1]
@@ -88,9 +88,9 @@ def lumbar_load(person: Agent, angles: Array, joints: Array, feet: Array, torque
         person: with a tree of numbers that has the disc.
         angles: roll, pitch, yaw of the pelvis in the person's frame [rad], shape (3,).
         joints: positions in the person's order [rad].
-        feet: wrenches on the left and the right foot in the soles' frames, shape (12,).
+        feet: wrenches on them in the soles' frames, foot after foot, shape (6 x feet,).
         torque: of the joint of flexion [N m].
     """
-    soles = tuple(person.soles[side] for side in SIDES)
+    soles = person.foot_frames
     force, slopes = _through_disc(person.tree, person.joints, soles)(angles, joints, feet)
     return LumbarLoad(-float(torque), np.array(force).ravel(), np.array(slopes)[2])

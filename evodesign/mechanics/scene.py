@@ -31,6 +31,10 @@ ROBOT, HUMAN = "robot", "human"
 """Names of the robot and of the person where there is one of each."""
 
 SIDES = ("left", "right")
+
+TO_THE_LEFT = {"left": 1.0, "right": -1.0, "": 0.0}
+"""The direction along y of a side."""
+
 DIAGONAL = math.sqrt(0.5)
 
 QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
@@ -49,6 +53,53 @@ class Role(StrEnum):
 
     ROBOT = "robot"
     PERSON = "person"
+
+
+class Touched(StrEnum):
+    """What an agent touches."""
+
+    GROUND = "ground"
+    LOAD = "load"
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """Where an agent touches the ground or the load.
+
+    Args:
+        name: unique in its agent, such as `left_hand`.
+        touched: what it touches.
+        frame: of the agent; on the ground its z is the ground's normal.
+        side: `left` or `right` of a pair of mirror images; empty on the middle line.
+        patch: of the sole that stands on the ground; None: a hand.
+    """
+
+    name: str
+    touched: Touched
+    frame: str
+    side: str = ""
+    patch: SoleSize | None = None
+
+    @property
+    def sole(self) -> SoleSize:
+        """The patch of a foot."""
+        if self.patch is None:
+            raise ValueError(f"{self.name} stands on nothing")
+        return self.patch
+
+
+def two_hands_two_feet(
+    hands: Mapping[str, str], soles: Mapping[str, str], sole: SoleSize
+) -> tuple[Contact, ...]:
+    """The contacts of somebody who stands on both feet and holds the load with both hands.
+
+    Args:
+        hands: frame that meets the load, by side.
+        soles: frame under the foot, by side.
+        sole: size of each foot.
+    """
+    feet = [Contact(f"{side}_foot", Touched.GROUND, soles[side], side, sole) for side in SIDES]
+    return (*feet, *(Contact(f"{side}_hand", Touched.LOAD, hands[side], side) for side in SIDES))
 
 
 class Grasp(StrEnum):
@@ -85,8 +136,8 @@ class Payload:
         center_of_mass: from the box's centre, in its frame [m].
         grasp: what every hand can pass to the load.
         hand_moment: largest size of each component of the moment that a rigid hand passes [N m].
-        grasp_points: of each agent's hands in the load's frame [m], by agent name and side; the hands that
-            it leaves out are at the top edge that faces the agent, at 0.4 of the width to its left or right.
+        grasp_points: of agents' hands in the load's frame [m], by the names of agent and contact; the hands
+            that it leaves out are at the top edge that faces the agent, at 0.4 of the width to a side.
         label: what it is called where a problem has several loads.
         grasp_direction: from where forearms come to the load.
         grasp_cone: largest angle of a forearm from that direction [rad].
@@ -114,13 +165,13 @@ class Payload:
         mass = self.mass * (1.0 + disturbance.mass_share)
         return replace(self, mass=mass, center_of_mass=(moved[0], moved[1], moved[2]))
 
-    def grasp_point(self, agent: Agent, side: str) -> Vector:
+    def grasp_point(self, agent: Agent, hand: Contact) -> Vector:
         """Grasp point of an agent's hand, from the box's centre, in that agent's frame [m]."""
-        given = self.grasp_points.get((agent.name, side))
+        given = self.grasp_points.get((agent.name, hand.name))
         if given is not None:
             return agent.from_world(given)
         depth, width, height = self.size
-        return (-depth / 2.0, 0.4 * width * (1.0 if side == "left" else -1.0), height / 2.0)
+        return (-depth / 2.0, 0.4 * width * TO_THE_LEFT[hand.side], height / 2.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,9 +221,7 @@ class Agent:
         role: what it is.
         tree: links and joints.
         joints: names of the joints that move; the others are held at zero.
-        hands: frame that meets the load, by side.
-        soles: frame under the foot, by side.
-        sole_size: of each foot.
+        contacts: with ground and load, in the order of programs.
         trunk: frames that keep clear of the load.
         label: who it is where a problem has several people.
         strengths: of its joints, by name; none for a robot.
@@ -192,9 +241,7 @@ class Agent:
     role: Role
     tree: Tree
     joints: tuple[str, ...]
-    hands: Mapping[str, str]
-    soles: Mapping[str, str]
-    sole_size: SoleSize
+    contacts: tuple[Contact, ...]
     trunk: tuple[str, ...]
     label: str = ""
     strengths: Mapping[str, JointStrength] = field(default_factory=dict)
@@ -208,6 +255,30 @@ class Agent:
     measured: MeasuredPosture | None = None
     stance: StanceLimits | None = None
     quarters: int = 0
+
+    @property
+    def feet(self) -> tuple[Contact, ...]:
+        """The contacts with the ground."""
+        return tuple(each for each in self.contacts if each.touched is Touched.GROUND)
+
+    @property
+    def hands(self) -> tuple[Contact, ...]:
+        """The contacts with the load."""
+        return tuple(each for each in self.contacts if each.touched is Touched.LOAD)
+
+    @property
+    def hand_frames(self) -> tuple[str, ...]:
+        """The frames of its hands."""
+        return tuple(hand.frame for hand in self.hands)
+
+    @property
+    def foot_frames(self) -> tuple[str, ...]:
+        """The frames of its soles."""
+        return tuple(foot.frame for foot in self.feet)
+
+    def frame(self, contact: str) -> str:
+        """The frame of a contact of a name."""
+        return next(each.frame for each in self.contacts if each.name == contact)
 
     @property
     def pushed_frame(self) -> str:
@@ -272,6 +343,10 @@ class Scene:
     def human(self) -> Agent:
         """The first person."""
         return self.people[0]
+
+    def agent(self, name: str) -> Agent:
+        """The agent of a name."""
+        return next(agent for agent in self.agents if agent.name == name)
 
     def with_agents(self, *changed: Agent) -> Scene:
         """The same with other agents in place of those of their names."""

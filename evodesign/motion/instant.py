@@ -31,7 +31,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp
+from evodesign.mechanics.scene import HUMAN, ROBOT, Contact, Grasp
 from evodesign.nlp.blocks import Block
 from evodesign.nlp.program import ConstraintBlock, Expression, Variable
 from evodesign.posture.allocation import shared_scene, shared_weights
@@ -94,7 +94,7 @@ class Symbols:
         rates, changes: time derivatives of the posture variables, SI units, by variable name.
         height: of the load [m].
         lifted: its acceleration [m/s^2].
-        places: of the soles: x, y [m] and the sine of their turn, by agent and side.
+        places: of the soles: x, y [m] and the sine of their turn, by agent and contact.
         grips: of hands that hold rigidly: how they are turned against where a start has them, likewise.
     """
 
@@ -104,8 +104,8 @@ class Symbols:
     changes: Mapping[str, Expression]
     height: Expression
     lifted: Expression
-    places: Mapping[tuple[str, str], Expression]
-    grips: Mapping[tuple[str, str], Expression]
+    places: Mapping[tuple[str, Contact], Expression]
+    grips: Mapping[tuple[str, Contact], Expression]
 
 
 class KnotBlocks:
@@ -139,8 +139,8 @@ class KnotBlocks:
         self._rates = {form.agent.name: _derivatives(form, "rate") for form in forms}
         self._changes = {form.agent.name: _derivatives(form, "change") for form in forms}
         rigid = scene.payload.grasp is Grasp.RIGID
-        hands = [(form.agent.name, side) for form in forms for side in form.sides if rigid]
-        self._turns = {key: ca.SX.sym(f"{'.'.join(key)}_turn", 3, 3) for key in hands}
+        hands = [(form.agent.name, hand) for form in forms for hand in form.hands if rigid]
+        self._turns = {(name, hand): ca.SX.sym(f"{name}.{hand.name}_turn", 3, 3) for name, hand in hands}
         self._height, self._lifted = ca.SX.sym("height"), ca.SX.sym("lifted")
 
     @cached_property
@@ -238,11 +238,11 @@ class KnotBlocks:
             height=self._height,
             lifted=self._lifted,
             places={
-                (form.agent.name, side): ca.SX.sym(f"{form.agent.name}.{side}_place", 3)
+                (form.agent.name, foot): ca.SX.sym(f"{form.agent.name}.{foot.name}_place", 3)
                 for form in self.forms
-                for side in form.sides
+                for foot in form.feet
             },
-            grips={key: ca.SX.sym(f"{'.'.join(key)}_grip", 3) for key in self._turns},
+            grips={(name, hand): ca.SX.sym(f"{name}.{hand.name}_grip", 3) for name, hand in self._turns},
         )
 
     @cached_property
@@ -352,7 +352,7 @@ class KnotBlocks:
     def hands(self) -> ca.Function:
         """How hands that hold rigidly are turned, as `shared` has them, from posture and design."""
         bodies = self._assembly.undisturbed.bodies
-        turns = [bodies[name].poses[bodies[name].agent.hands[side]].rotation for name, side in self._turns]
+        turns = [bodies[name].poses[hand.frame].rotation for name, hand in self._turns]
         column = ca.vertcat(ca.SX(0, 1), *[ca.vec(turn) for turn in turns])
         (found,) = self._in_units([column], self._posture)
         return ca.Function("hands", [self._posture, self.design], [found], {"cse": True})
@@ -397,16 +397,16 @@ class KnotBlocks:
 
     def _soles(self, body: Body) -> Iterator[Expression]:
         """By how much each sole is out of its place: x, y, z [m], its slants and the sine of its turn."""
-        for side in body.form.sides:
-            sole, place = body.poses[body.agent.soles[side]], self.symbols.places[body.agent.name, side]
+        for foot in body.form.feet:
+            sole, place = body.poses[foot.frame], self.symbols.places[body.agent.name, foot]
             where = sole.position - ca.vertcat(place[:2], 0.0)
             yield ca.vertcat(where, sole.rotation[:2, 2], sole.rotation[1, 0] - place[2])
 
     def _grips(self, body: Body) -> Iterator[Expression]:
         """By how much each rigid hand turns from its grip: axis times sine of the angle."""
-        for side in body.form.sides if self._turns else ():
-            key = body.agent.name, side
-            turn = self._turns[key].T @ body.poses[body.agent.hands[side]].rotation
+        for hand in body.form.hands if self._turns else ():
+            key = body.agent.name, hand
+            turn = self._turns[key].T @ body.poses[hand.frame].rotation
             yield ca.inv_skew(turn - turn.T) / 2.0 - self.symbols.grips[key]
 
     def _smoothness(self, form: Form) -> Expression:

@@ -22,7 +22,7 @@ import scipy
 from numpy.typing import NDArray
 
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import SIDES, Grasp, Scene
+from evodesign.mechanics.scene import Grasp, Scene
 from evodesign.motion.course import LiftCourse
 from evodesign.motion.instant import fastest_joints
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker, SceneMotion
@@ -142,10 +142,10 @@ class LiftChecker:
             agent, first = model.agent, None
             for instant, residuals in zip(instants, found, strict=True):
                 state = model.at(instant.postures[agent.name])
-                poses = [state.pose(agent.soles[side]) for side in SIDES]
+                poses = [state.pose(foot.frame) for foot in agent.feet]
                 here = np.concatenate([np.r_[origin[:2], turn[1, 0]] for turn, origin in poses])
                 if self._scene.payload.grasp is Grasp.RIGID:
-                    turns = [state.pose(agent.hands[side])[0].ravel() for side in SIDES]
+                    turns = [state.pose(hand.frame)[0].ravel() for hand in agent.hands]
                     here = np.concatenate([here, *turns])
                 first = here if first is None else first
                 slip = float(np.abs(here - first).max())
@@ -208,7 +208,8 @@ def _wrong(
         for posture in load_case.values()
     ]
     torque = max(posture.torque_norm for posture in postures)
-    force = max(float(np.abs(wrench[:3]).max()) for p in postures for wrench in p.foot_wrenches.values())
+    wrenches = [wrench for posture in postures for wrench in posture.wrenches.values()]
+    force = max(float(np.abs(wrench[:3]).max()) for wrench in wrenches)
     allowed = {**PLACES, "N m": SHARE * torque, "N": SHARE * force}
     excess = [(each.size / allowed[each.unit], each) for here in between for each in here]
     share, worst = max(excess, key=lambda pair: pair[0], default=(0.0, worst))

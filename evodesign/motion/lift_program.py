@@ -389,8 +389,8 @@ class LiftProgram:
             if isinstance(variable.key, Slot) and variable.key.party == party:
                 places = self._first["others"] + knots * self._others + rows
                 found[variable.name] = places.ravel(), variable.scale
-        names = [(who, f"{who}.{side}_place") for who, side in seen.places]
-        names += [(who, f"{who}.{side}_grip") for who, side in seen.grips]
+        names = [(who, f"{who}.{foot.name}_place") for who, foot in seen.places]
+        names += [(who, f"{who}.{hand.name}_grip") for who, hand in seen.grips]
         for number, (who, name) in enumerate(names):
             if who == party:
                 found[name] = self._first["places"] + 3 * number + np.arange(3), 1.0
@@ -400,8 +400,8 @@ class LiftProgram:
         """Where the turns of an agent's rigid hands stand among those of a start, by name."""
         keys = [*self._blocks.symbols.grips]
         return {
-            f"{who}.{side}_turn": 9 * number + np.arange(9)
-            for number, (who, side) in enumerate(keys)
+            f"{who}.{hand.name}_turn": 9 * number + np.arange(9)
+            for number, (who, hand) in enumerate(keys)
             if who == party
         }
 
@@ -455,11 +455,11 @@ class LiftProgram:
         rows: list[int] = []
         first = 0
         for form in self._blocks.forms:
-            first += 3 * len(form.sides)
-            for _ in form.sides:
+            first += 3 * len(form.hands)
+            for _ in form.feet:
                 rows += [first, first + 1, first + 5]
                 first += 6
-            first += 3 * len(form.sides) if self._grips else 0
+            first += 3 * len(form.hands) if self._grips else 0
         return np.array(rows)
 
     def _closed(

@@ -18,7 +18,7 @@ import numpy as np
 from evodesign.mechanics.balance import AppliedWrench
 from evodesign.mechanics.disturbance import Disturbance, PushedAt
 from evodesign.mechanics.inertial_forces import euler_motion, inertial_wrenches
-from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
+from evodesign.mechanics.scene import Agent, Contact, Scene
 from evodesign.nlp.program import ConstraintBlock, Expression, Variable
 from evodesign.posture.limit_groups import Enforced
 from evodesign.posture.parting import PartedBody
@@ -32,7 +32,7 @@ from evodesign.posture.terms.base import (
     Row,
     SystemTerm,
     Unknown,
-    both_hands,
+    all_hands,
     bounds_of,
 )
 from evodesign.posture.terms.collisions import CLEAR, PARTING, directed
@@ -74,20 +74,29 @@ class FreeHands:
     """An agent reduced to its hands: forces on the load that it may choose freely, with no body behind them.
 
     Args:
-        name: the agent's.
-        sides: whose wrenches are variables; the right hand mirrors the left one if it is left out.
+        agent: whose they are.
+        free: hands whose wrenches are variables; the others mirror them.
     """
 
-    name: str
-    sides: tuple[str, ...]
+    agent: Agent
+    free: tuple[Contact, ...]
+
+    @property
+    def name(self) -> str:
+        """The agent's."""
+        return self.agent.name
 
 
 Party = Embodied | FreeHands
 
 
-def free_hands_beside(form: Form) -> FreeHands:
-    """The hands of the other agent beside an agent of a form."""
-    return FreeHands(HUMAN if form.agent.name == ROBOT else ROBOT, form.sides)
+def free_hands_beside(form: Form, scene: Scene) -> tuple[FreeHands, ...]:
+    """The hands of the other agents of a scene, beside an agent of a form; mirrored where it is."""
+    return tuple(
+        FreeHands(agent, tuple(h for h in agent.hands if form.mirror is None or h.side != "right"))
+        for agent in scene.agents
+        if agent.name != form.agent.name
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,7 +152,7 @@ class LoadCase:
 
     Args:
         bodies: by agent name.
-        hands: wrenches on both hands of both agents, by agent and side.
+        hands: wrenches on all hands, by the names of agent and contact.
         costs: by party, then the system's; without those of the posture alone.
         posture_costs: likewise those that depend on the posture alone; zero in disturbed load cases.
         free_moments: cost of the moments of free hands.
@@ -272,9 +281,9 @@ class _Assembler:
                 self._parted.append(PartedBody(f"{block}.{PARTING}", f"{block}.{CLEAR}", body))
         hands = {name: body.hands for name, body in bodies.items()}
         for free in self._hands:
-            asked, slot = hand_unknowns(free.sides, scene.payload), Slot(instant, number, free.name, "")
+            asked, slot = hand_unknowns(free.free, scene.payload), Slot(instant, number, free.name, "")
             found = {unknown.part: self._variable(unknown, f"{prefix}partner", slot) for unknown in asked}
-            hands[free.name] = both_hands({side: found[f"{side}_hand"] for side in free.sides})
+            hands[free.name] = all_hands(free.agent.hands, found)
         for name, body in bodies.items():
             rows = [row for term in self._body_terms for row in term.rows(body)]
             self._add(rows, f"{prefix}{name}.", name, again=again)

@@ -24,9 +24,8 @@ class AgentPosture:
         base_angles: roll, pitch, yaw of the root link in the agent's frame [rad], shape (3,).
         joints: position [rad] of each joint that moves.
         torques: torque [N m] of each joint that moves.
-        hand_wrenches: force [N] and moment about the grasp point [N m] on the hand, by side, in the agent's
-            frame, shape (6,).
-        foot_wrenches: force [N] and moment [N m] on the foot, by side, in the sole frame, shape (6,).
+        wrenches: force [N] and moment [N m] on the agent by the name of its contact, shape (6,): on a hand
+            about the grasp point in the agent's frame, on a foot in the sole frame.
         speeds: of each joint that moves [rad/s]; none of a load held still.
     """
 
@@ -34,8 +33,7 @@ class AgentPosture:
     base_angles: Array
     joints: Mapping[str, float]
     torques: Mapping[str, float]
-    hand_wrenches: Mapping[str, Array]
-    foot_wrenches: Mapping[str, Array]
+    wrenches: Mapping[str, Array]
     speeds: Mapping[str, float] = field(default_factory=dict)
 
     @property

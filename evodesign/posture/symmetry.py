@@ -21,7 +21,7 @@ from evodesign.body.placement import Placement
 from evodesign.errors import ModelError
 from evodesign.human.coupled_joints import Rhythm
 from evodesign.mechanics.disturbance import Disturbance, PushedAt
-from evodesign.mechanics.scene import SIDES, Agent, Scene
+from evodesign.mechanics.scene import Agent, Contact, Scene, Touched
 from evodesign.posture.results import AgentPosture, Array
 from evodesign.tree.frames import link_frames
 from evodesign.tree.mirror_pairs import Mirror
@@ -42,14 +42,24 @@ class Form:
     Args:
         agent: all of it.
         joints: the agent's joints that move.
-        sides: whose hands and feet are variables.
+        contacts: whose wrenches are variables; the others mirror them.
         mirror: of the agent's tree; None when everything is described.
     """
 
     agent: Agent
     joints: tuple[str, ...]
-    sides: tuple[str, ...]
+    contacts: tuple[Contact, ...]
     mirror: Mirror | None
+
+    @property
+    def feet(self) -> tuple[Contact, ...]:
+        """Its contacts with the ground."""
+        return tuple(each for each in self.contacts if each.touched is Touched.GROUND)
+
+    @property
+    def hands(self) -> tuple[Contact, ...]:
+        """Its contacts with the load."""
+        return tuple(each for each in self.contacts if each.touched is Touched.LOAD)
 
     @property
     def counts(self) -> tuple[float, ...]:
@@ -108,17 +118,13 @@ class Form:
 
     def expand(self, values: Mapping[str, Array]) -> AgentPosture:
         """The whole posture from a solution's values (names without the agent's)."""
-        hands = {side: padded(values[f"{side}_hand"]) for side in self.sides}
-        feet = {side: values[f"{side}_foot"] for side in self.sides}
-        if self.mirror is not None:
-            hands["right"], feet["right"] = hands["left"] * WRENCH, feet["left"] * WRENCH
+        wrenches = {each.name: padded(values[each.name]) for each in self.contacts}
         return AgentPosture(
             base_position=values["base_position"],
             base_angles=values["base_angles"],
             joints=self.whole_joints(self.positions(values["joints"])),
             torques=self.whole_joints(values["torques"]),
-            hand_wrenches=hands,
-            foot_wrenches=feet,
+            wrenches=both_sides(self.agent.contacts, wrenches, WRENCH),
         )
 
     def whole_joints(self, values: Array) -> dict[str, float]:
@@ -151,14 +157,28 @@ class Form:
             "base_angles": posture.base_angles,
             "joints": np.array([_moved(posture, joints) for joints in self.coordinates.values()]),
             "torques": np.array([posture.torques[name] for name in self.joints]),
-            **{f"{side}_hand": posture.hand_wrenches[side] for side in self.sides},
-            **{f"{side}_foot": posture.foot_wrenches[side] for side in self.sides},
+            **{each.name: posture.wrenches[each.name] for each in self.contacts},
         }
 
 
 def _moved(posture: AgentPosture, joints: Iterable[str]) -> float:
     """By how much joints have moved together; the sign of a zero stays."""
     return sum((posture.joints[name] for name in joints), start=-0.0)
+
+
+def both_sides(contacts: Iterable[Contact], known: Mapping[str, Any], image: Any) -> dict[str, Any]:
+    """Wrenches of all contacts, by name, from those of some, which the others mirror.
+
+    Args:
+        contacts: of an agent.
+        known: wrenches by name, numbers or expressions.
+        image: by which each component is multiplied in a mirror image.
+    """
+    twins = {each.touched: each.name for each in contacts if each.side == "left"}
+    return {
+        each.name: known[each.name] if each.name in known else known[twins[each.touched]] * image
+        for each in contacts
+    }
 
 
 def _both_sides(known: Mapping[str, float], agent: Agent, mirror: Mirror) -> dict[str, float]:
@@ -173,7 +193,7 @@ def _both_sides(known: Mapping[str, float], agent: Agent, mirror: Mirror) -> dic
 
 def whole(agent: Agent) -> Form:
     """All of an agent."""
-    return Form(agent, agent.joints, SIDES, None)
+    return Form(agent, agent.joints, agent.contacts, None)
 
 
 def half(agent: Agent) -> Form:
@@ -183,7 +203,8 @@ def half(agent: Agent) -> Form:
         ModelError: naming the links, joints or frames that differ.
     """
     mirror = mirror_of(agent.tree)
-    for noun, frames in (("hands", agent.hands), ("soles", agent.soles)):
+    for noun, contacts in (("hands", agent.hands), ("soles", agent.feet)):
+        frames = {each.side: each.frame for each in contacts}
         if mirror.links[frames["left"]] != frames["right"]:
             found = f"'{frames['left']}' and '{frames['right']}'"
             raise ModelError(agent.tree.name, f"{agent.name}.{noun}", "mirror images of each other", found)
@@ -201,16 +222,17 @@ def half(agent: Agent) -> Form:
         for name in agent.joints
         if name in kept and not (mirror.joints[name] == name and mirror.signs[name] < 0.0)
     )
-    return Form(agent, joints, ("left",), mirror)
+    return Form(agent, joints, tuple(each for each in agent.contacts if each.side != "right"), mirror)
 
 
 def _refuse_turned_soles(agent: Agent) -> None:
     """Refuse soles whose frames are no mirror images: wrenches on feet live in them (x forward, z up)."""
     frames = link_frames(agent.tree, Placement(), {})
-    left, right = (frames[agent.soles[side]] for side in SIDES)
+    left, right = (frames[foot.frame] for foot in agent.feet)
     turn = np.abs(np.array(left.mirrored().rotation) - np.array(right.rotation)).max()
     if turn > PARALLEL:
-        found = f"'{agent.soles['left']}' and '{agent.soles['right']}', which are turned differently"
+        names = " and ".join(f"'{foot.frame}'" for foot in agent.feet)
+        found = f"{names}, which are turned differently"
         wanted = "frames that are mirror images of each other"
         raise ModelError(agent.tree.name, f"{agent.name}.soles", wanted, found)
 
@@ -226,7 +248,7 @@ def symmetric_forms(scene: Scene) -> tuple[Form, Form]:
         found = f"y = {payload.center_of_mass[1]:g} m"
         raise ModelError("payload", "center_of_mass_m", "y = 0 in a symmetric scene", found)
     for agent in scene.agents:
-        left, right = (payload.grasp_point(agent, side) for side in SIDES)
+        left, right = (payload.grasp_point(agent, hand) for hand in agent.hands)
         if tuple(left) != (right[0], -right[1], right[2]):
             key = f"{agent.name}_grasps_m"
             raise ModelError("payload", key, "mirror images in a symmetric scene", f"{left} and {right}")

@@ -19,7 +19,7 @@ from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree
 from evodesign.human.population import population
 from evodesign.human.strength import joint_strengths, with_given
 from evodesign.mechanics.contact import SoleSize
-from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Gaze, Role
+from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Gaze, Role, two_hands_two_feet
 from evodesign.problem.file import (
     Facing,
     FrameTable,
@@ -56,7 +56,7 @@ def robot_agent(tables: ProblemFile, source: ProblemSource) -> Agent:
 def _bent(agent: Agent, table: RobotTable, source: ProblemSource) -> Mapping[str, tuple[float, float]]:
     """Ranges of knees and elbows that stay bent."""
     asked = {
-        "knee_flexion_deg": (table.knee_flexion_deg, agent.soles),
+        "knee_flexion_deg": (table.knee_flexion_deg, agent.feet),
         "elbow_flexion_deg": (table.elbow_flexion_deg, agent.hands),
     }
     found: dict[str, tuple[float, float]] = {}
@@ -202,9 +202,11 @@ def _agent(
         role=role,
         tree=tree,
         joints=joints or tree.actuated,
-        hands={side: getattr(hands, side) for side in SIDES},
-        soles={side: getattr(soles, side) for side in SIDES},
-        sole_size=SoleSize(*soles.size_m),
+        contacts=two_hands_two_feet(
+            {side: getattr(hands, side) for side in SIDES},
+            {side: getattr(soles, side) for side in SIDES},
+            SoleSize(*soles.size_m),
+        ),
         trunk=trunk,
         quarters=0 if role is Role.ROBOT else 2,
     )

@@ -58,7 +58,7 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
     ignored = {frozenset(pair) for pair in table.ignore}
     checked = [
         pair
-        for pair in checked_pairs(agent.tree, agent.joints, agent.hands, agent.soles)
+        for pair in checked_pairs(agent.tree, agent.joints, agent.hand_frames, agent.foot_frames)
         if frozenset(pair) not in ignored
     ]
     resized = (space.resized(agent.tree, values) for values in _designs(space) if agent.name == ROBOT)
@@ -69,7 +69,7 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
     for pair in table.part:
         if pair[0] in names and (pair[1] in names or pair[1] == LOAD or pair[1] in PLANES):
             own.setdefault(frozenset(pair), pair)
-    feet = feet_pairs(agent.tree, agent.joints, agent.soles, checked)
+    feet = feet_pairs(agent.tree, agent.joints, agent.foot_frames, checked)
     parted = (*feet, *(own[frozenset(pair)] for pair in table.part if frozenset(pair) in own))
     parted = tuple(dict.fromkeys(parted))
     narrow = {

@@ -8,7 +8,7 @@ it grows towards the side to which the joint turns farther.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError
-from evodesign.mechanics.scene import Agent
+from evodesign.mechanics.scene import Agent, Contact
 from evodesign.records import ProblemSource
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Joint, JointKind
@@ -39,13 +39,13 @@ class _Hinge:
 
 
 def bent_ranges(
-    agent: Agent, ends: Mapping[str, str], flexion: float, key: str, source: ProblemSource
+    agent: Agent, ends: Iterable[Contact], flexion: float, key: str, source: ProblemSource
 ) -> Mapping[str, Range]:
     """The ranges of the joints that bend limbs, with a least flexion, by joint [rad].
 
     Args:
         agent: unscaled.
-        ends: frames at the limbs' ends, by side.
+        ends: contacts at the limbs' ends.
         flexion: least [rad].
         key: that asks for it, for messages.
         source: the problem, likewise.
@@ -54,7 +54,8 @@ def bent_ranges(
     """
     frames = link_frames(agent.tree, Placement(), {})
     places = {name: np.array(frame.translation, float) for name, frame in frames.items()}
-    chains = {side: _chain(agent, end) for side, end in ends.items()}
+    frame_of = {end.side: end.frame for end in ends}
+    chains = {side: _chain(agent, end) for side, end in frame_of.items()}
     shared = set.intersection(*({joint.name for joint in chain} for chain in chains.values()))
     found: dict[str, Range] = {}
     for side, chain in chains.items():
@@ -65,11 +66,11 @@ def bent_ranges(
         ]
         if not hinges:  # both ends are of one limb, which `check` names
             continue
-        bend = _bend(hinges, places[ends[side]])
-        wanted = f"at most what the {side} limb above '{ends[side]}' bends"
+        bend = _bend(hinges, places[frame_of[side]])
+        wanted = f"at most what the {side} limb above '{frame_of[side]}' bends"
         if bend is None:
             raise InputError(source.path, key, wanted, "a limb without a joint between its ends")
-        own = _bent(hinges, bend, places[ends[side]], flexion)
+        own = _bent(hinges, bend, places[frame_of[side]], flexion)
         joint = hinges[bend].joint
         if own is None:
             degrees = [f"{math.degrees(limit):g}" for limit in (joint.lower, joint.upper)]

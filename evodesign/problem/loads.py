@@ -50,7 +50,7 @@ def _payload(key: str, table: PayloadTable, source: ProblemSource) -> Payload:
             where = f"{key}.center_of_mass_m[{axis}]"
             raise InputError(source.path, where, f"a point in the box, at most {size / 2.0:g}", f"{offset:g}")
     points = {
-        (agent, side): getattr(grasps, side)
+        (agent, f"{side}_hand"): getattr(grasps, side)
         for agent, grasps in ((ROBOT, table.robot_grasps_m), (HUMAN, table.human_grasps_m))
         if grasps is not None
         for side in SIDES
@@ -97,10 +97,10 @@ def refuse_stiff_arms(source: ProblemSource, loads: Sequence[Payload], agents: S
     if all(load.grasp_direction is GraspDirection.FREE for load in loads):
         return
     for agent in agents:
-        for side in SIDES:
-            if elbow(agent, side) is None:
+        for hand in agent.hands:
+            if elbow(agent, hand) is None:
                 wanted = f"'free', or an arm of '{agent.tree.name}' that bends"
-                found = f"no moving joint between the trunk and '{agent.hands[side]}'"
+                found = f"no moving joint between the trunk and '{hand.frame}'"
                 raise InputError(source.path, "payload.grasp_direction", wanted, found)
 
 

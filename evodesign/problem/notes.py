@@ -56,7 +56,7 @@ def assumed_heights(problem: DesignProblem) -> Iterator[str]:
         person = scene.human
         if person.measured is None:
             continue
-        palm, stature = scene.payload.grasp_point(person, "left")[2], person.measured.stature
+        palm, stature = scene.payload.grasp_point(person, person.hands[0])[2], person.measured.stature
         holds = [hold.height_m for hold in problem.holds if low < (hold.height_m + palm) / stature < high]
         if holds:
             yield (

@@ -87,7 +87,7 @@ def _measured(key: str, table: HumanTable, person: Agent, source: ProblemSource)
 def _stature(person: Agent) -> float:
     """Of a person from a URDF [m]: from the soles to the head's joint, over that share of stature."""
     frames = link_frames(person.tree, Placement(), {})
-    soles, lengths = person.soles.values(), tables().lengths
+    soles, lengths = person.foot_frames, tables().lengths
     height: float = frames[HEAD].translation[2] - min(frames[sole].translation[2] for sole in soles)
     return height / (1.0 - lengths.head)
 

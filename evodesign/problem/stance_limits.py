@@ -23,7 +23,7 @@ def stance_of(tables: ProblemFile, source: ProblemSource, person: Agent | None =
     """
     limits, usual = tables.limits, StanceLimits()
     if person is not None:
-        apart = feet_apart(person.tree, person.sole_size.width)
+        apart = feet_apart(person.tree, person.feet[0].sole.width)
         usual = replace(usual, feet_apart=apart, trunk_clearance=trunk_clearance(person.tree))
     least, most = apart = limits.feet_apart_m or usual.feet_apart
     clear = usual.trunk_clearance if limits.trunk_clearance_m is None else limits.trunk_clearance_m

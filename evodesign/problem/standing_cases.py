@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from evodesign.body.placement import Vector
 from evodesign.errors import InputError
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import SIDES, Agent
+from evodesign.mechanics.scene import Agent
 from evodesign.mechanics.stance_case import RaisedHand, StanceCase
 from evodesign.problem.design_table import Feet, Hands, HoldTable, LoadCaseTable, Pushed, PushTable
 from evodesign.problem.file import ProblemFile
@@ -65,7 +65,7 @@ def _case(
     return StanceCase(
         name=table.name,
         joints={joint: math.radians(angle) for joint, angle in table.joints_deg.items()},
-        soles=tuple(robot.soles.values()) if table.feet is Feet.BOTH else (robot.soles[table.feet],),
+        soles=tuple(foot.frame for foot in robot.feet if table.feet in (Feet.BOTH, foot.side)),
         balance=table.balance,
         factor=table.factor,
         loads=(*_held(table.hold, robot), *_pushed(table.push, robot)),
@@ -89,7 +89,7 @@ def _held(hold: HoldTable | None, robot: Agent) -> Iterator[tuple[str, Vector]]:
 
 
 def _hands(hand: Hands, robot: Agent) -> list[str]:
-    return [robot.hands[side] for side in (SIDES if hand is Hands.BOTH else (str(hand),))]
+    return [each.frame for each in robot.hands if hand in (Hands.BOTH, each.side)]
 
 
 def _pushed(push: PushTable | None, robot: Agent) -> Iterator[tuple[str, Vector]]:

@@ -116,8 +116,8 @@ def _refuse_moved_frames(agent: Agent, mean: Agent) -> None:
     """Refuse hands and soles that averaging moves, as it may move a joint's origin along its axis."""
     before, after = (link_frames(each.tree, Placement(), {}) for each in (agent, mean))
     seen = seen_in_root(agent.tree)
-    for noun, frames in (("hands", agent.hands), ("soles", agent.soles)):
-        for side, name in frames.items():
+    for noun, contacts in (("hands", agent.hands), ("soles", agent.feet)):
+        for side, name in ((each.side, each.frame) for each in contacts):
             moved = math.dist(before[name].translation, after[name].translation)
             most = max(PLACE, SHARE * seen[name].reach)
             if moved > most:

@@ -144,7 +144,7 @@ def _slopes(
     share: float,
 ) -> Array:
     """[N m/kg], shape (cases, joints, groups); a case of a lift has the same under all disturbances."""
-    soles, slopes = tuple(robot.agent.soles.values()), []
+    soles, slopes = robot.agent.foot_frames, []
     for instant in (instant for solution in cases for instant in solution.instants):
         posture = instant.postures[ROBOT]
         positions = {**dict.fromkeys(body.joints, 0.0), **posture.joints}

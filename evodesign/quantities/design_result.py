@@ -100,23 +100,19 @@ class PostureSlopes:
     Args:
         base_angles: by roll, pitch, yaw [1/rad], shape (3,).
         joints: by position of each joint [1/rad].
-        hand_wrenches: by the wrench on each hand, by side, shape (6,); none: they do not matter.
-        foot_wrenches: by that on each foot, likewise.
+        wrenches: by the wrench of each contact, by name, shape (6,); none: they do not matter.
     """
 
     base_angles: Array
     joints: Mapping[str, float]
-    hand_wrenches: Mapping[str, Array] = field(default_factory=dict)
-    foot_wrenches: Mapping[str, Array] = field(default_factory=dict)
+    wrenches: Mapping[str, Array] = field(default_factory=dict)
 
     def along(self, posture: AgentPosture) -> float:
         """The sum of what a posture has, each times its derivative."""
         found = float(self.base_angles @ posture.base_angles)
         found += sum(slope * posture.joints[joint] for joint, slope in self.joints.items())
-        found += sum(float(slope @ posture.hand_wrenches[side]) for side, slope in self.hand_wrenches.items())
-        return found + sum(
-            float(slope @ posture.foot_wrenches[side]) for side, slope in self.foot_wrenches.items()
-        )
+        found += sum(float(slope @ posture.wrenches[name]) for name, slope in self.wrenches.items())
+        return found
 
 
 ByPosture = Callable[[Scene, Mapping[str, AgentPosture]], Mapping[str, PostureSlopes]]

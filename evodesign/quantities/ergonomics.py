@@ -32,7 +32,7 @@ from evodesign.human.worksheets import HeldLoad, Score, reba, rula
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.load_torques import load_torques
 from evodesign.mechanics.lumbar_load import LumbarLoad, has_lumbar_disc, lumbar_load
-from evodesign.mechanics.scene import SIDES, Agent
+from evodesign.mechanics.scene import Agent
 from evodesign.quantities.observed import observed
 from evodesign.records import AgentDetail
 from evodesign.tree.frames import link_frames
@@ -84,15 +84,15 @@ def ergonomics(person: Agent, posture: AgentDetail) -> Ergonomics:
     """
     root = Placement.from_xyz_rpy(posture.base_position_m, posture.base_rpy_rad)
     at = link_frames(person.tree, root, posture.joints_rad)
-    hands = _middle([at[person.hands[side]].translation for side in SIDES])
-    ankles = _middle([at[_ankle(person.tree, person.soles[side])].translation for side in SIDES])
+    hands = _middle([at[hand.frame].translation for hand in person.hands])
+    ankles = _middle([at[_ankle(person.tree, foot.frame)].translation for foot in person.feet])
     ahead, aside = hands[0] - ankles[0], hands[1] - ankles[1]
     task = LiftingTask(
         horizontal=math.hypot(ahead, aside),
         vertical=hands[2],
         asymmetry=math.degrees(abs(math.atan2(aside, ahead))),
     )
-    held = -math.fsum(posture.hand_wrenches[side][2] for side in SIDES) / GRAVITY
+    held = -math.fsum(posture.wrenches[hand.name][2] for hand in person.hands) / GRAVITY
     scores = _scores(person, posture, held)
     return Ergonomics(
         strain=largest_relative_torque(posture.torques_n_m, person.strengths),
@@ -108,14 +108,14 @@ def ergonomics(person: Agent, posture: AgentDetail) -> Ergonomics:
 
 
 def _load_torque(person: Agent, posture: AgentDetail) -> float:
-    hands = np.concatenate([posture.hand_wrenches[side] for side in SIDES])
+    hands = np.concatenate([posture.wrenches[hand.name] for hand in person.hands])
     return load_torques(person, np.array(posture.base_rpy_rad), _joints(person, posture), hands).norm
 
 
 def _back(person: Agent, posture: AgentDetail) -> LumbarLoad | None:
     if not has_lumbar_disc(person):
         return None
-    feet = np.concatenate([posture.foot_wrenches[side] for side in SIDES])
+    feet = np.concatenate([posture.wrenches[foot.name] for foot in person.feet])
     torque, angles = posture.torques_n_m[FLEXION], np.array(posture.base_rpy_rad)
     return lumbar_load(person, angles, _joints(person, posture), feet, torque)
 

@@ -19,7 +19,7 @@ import numpy as np
 from evodesign.body.placement import Placement
 from evodesign.mechanics import link_beams
 from evodesign.mechanics.floating_base import FloatingBody
-from evodesign.mechanics.scene import ROBOT, SIDES, Agent, Scene
+from evodesign.mechanics.scene import ROBOT, Agent, Scene
 from evodesign.mechanics.stance_case import StanceCase, StanceTorques, stance_torques
 from evodesign.posture.results import AgentPosture
 from evodesign.tree.equip import actuators_of
@@ -68,8 +68,8 @@ def torque_share(scene: Scene, postures: Postures) -> float:
 def hand_deflection(scene: Scene, postures: Postures) -> float:
     """How far the robot's hands give way downwards under the load, the mean of both [mm]."""
     robot, posture = scene.robot, postures[ROBOT]
-    hands = {robot.hands[side]: posture.hand_wrenches[side] for side in SIDES}
-    soles = tuple(robot.soles.values())
+    hands = {hand.frame: posture.wrenches[hand.name] for hand in robot.hands}
+    soles = robot.foot_frames
     return 1000.0 * link_beams.hand_deflection(robot.tree, _base(posture), posture.joints, hands, soles)
 
 
@@ -82,10 +82,11 @@ def link_safety(robot: Agent, posture: AgentPosture) -> dict[str, float]:
     """The safety factor of each of a robot's links that is a beam, by name; its tree is the design's."""
     base = _base(posture)
     places = link_frames(robot.tree, base, posture.joints)
-    wrenches = [(robot.hands[side], w[:3], w[3:]) for side, w in posture.hand_wrenches.items()]
-    for side, wrench in posture.foot_wrenches.items():
-        turn = np.array(places[robot.soles[side]].rotation, float)
-        wrenches.append((robot.soles[side], turn @ wrench[:3], turn @ wrench[3:]))
+    held = [(hand.frame, posture.wrenches[hand.name]) for hand in robot.hands]
+    wrenches = [(frame, wrench[:3], wrench[3:]) for frame, wrench in held]
+    for foot in robot.feet:
+        turn, wrench = np.array(places[foot.frame].rotation, float), posture.wrenches[foot.name]
+        wrenches.append((foot.frame, turn @ wrench[:3], turn @ wrench[3:]))
     return link_beams.safety_factors(robot.tree, base, posture.joints, wrenches)
 
 

@@ -208,7 +208,7 @@ def worst_least_time(result: DesignResult) -> float | None:
 
 def com_height(result: DesignResult) -> float:
     """Height of the robot's centre of mass above its soles, all joints at zero [m] (paper, task t4)."""
-    return float(standing_height_of_mass(result.tree, tuple(result.robot.soles.values())))
+    return float(standing_height_of_mass(result.tree, result.robot.foot_frames))
 
 
 def paper_cost(result: DesignResult) -> float | None:
@@ -221,8 +221,10 @@ def paper_cost(result: DesignResult) -> float | None:
     cost = tasks.weights.torque * strain.sum() / TORQUE_UNIT**2
     cost += tasks.of_design(result.space, result.values, result.robot, result.tree)
     if tasks.weights.center_of_pressure:
-        feet = [posture.foot_wrenches for case in result.cases for posture in case.postures.values()]
-        cost += tasks.weights.center_of_pressure * sum(pressure_task(wrenches) for wrenches in feet)
+        for case in result.cases:
+            for agent in result.scene_of(case.case).agents:
+                feet = {foot.name: case.postures[agent.name].wrenches[foot.name] for foot in agent.feet}
+                cost += tasks.weights.center_of_pressure * pressure_task(feet)
     return float(cost)
 
 

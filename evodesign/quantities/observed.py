@@ -95,7 +95,7 @@ def _body(at: Frames, posture: AgentDetail) -> BodySeen:
     spine = at[NECK][1] - at[PELVIS][1]
     shoulders = at["LeftUpperArm"][1] - at["RightUpperArm"][1]
     across = at[PELVIS][0][:, 1]
-    pressed = [posture.foot_wrenches[side][2] for side in SIDES]
+    pressed = [posture.wrenches[f"{side}_foot"][2] for side in SIDES]
     knees = [_degrees(joints, f"j{side.title()}Knee_roty") for side in SIDES]
     return BodySeen(
         neck=_degrees(joints, "jT1C7_roty", "jC1Head_roty"),

@@ -10,7 +10,7 @@ The formulas are those of `mechanics.load_torques` and `mechanics.lumbar_load`.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -18,8 +18,8 @@ from evodesign.human.back import FLEXION, MUSCLE_LEVER
 from evodesign.human.endurance import endurance
 from evodesign.mechanics.load_torques import LoadTorques, load_torques
 from evodesign.mechanics.lumbar_load import LumbarLoad, lumbar_load
-from evodesign.mechanics.scene import HUMAN, SIDES, Agent, Scene
-from evodesign.posture.results import AgentPosture
+from evodesign.mechanics.scene import HUMAN, Agent, Contact, Scene
+from evodesign.posture.results import AgentPosture, Array
 from evodesign.quantities.design_result import CaseQuantity, DesignResult, PostureSlopes, values_over_instants
 
 BACK = "back_compression"
@@ -29,7 +29,7 @@ BACK = "back_compression"
 def added_by_load(person: Agent, posture: AgentPosture) -> LoadTorques:
     """What the load adds to a person's torques (`mechanics.load_torques`)."""
     joints = np.array([posture.joints[name] for name in person.joints])
-    hands = np.concatenate([posture.hand_wrenches[side] for side in SIDES])
+    hands = np.concatenate([posture.wrenches[hand.name] for hand in person.hands])
     return load_torques(person, posture.base_angles, joints, hands)
 
 
@@ -42,13 +42,12 @@ def load_torque_by_posture(scene: Scene, postures: Mapping[str, AgentPosture]) -
     """Its derivatives by the person's posture and hands' wrenches."""
     slopes = added_by_load(scene.human, postures[HUMAN]).slopes()
     joints = dict(zip(scene.human.joints, slopes.joints.tolist(), strict=True))
-    hands = dict(zip(SIDES, np.split(slopes.hands, 2), strict=True))
-    return {HUMAN: PostureSlopes(slopes.angles, joints, hands)}
+    return {HUMAN: PostureSlopes(slopes.angles, joints, _by_contact(scene.human.hands, slopes.hands))}
 
 
 def _back(person: Agent, posture: AgentPosture) -> LumbarLoad:
     joints = np.array([posture.joints[name] for name in person.joints])
-    feet = np.concatenate([posture.foot_wrenches[side] for side in SIDES])
+    feet = np.concatenate([posture.wrenches[foot.name] for foot in person.feet])
     return lumbar_load(person, posture.base_angles, joints, feet, posture.torques[FLEXION])
 
 
@@ -66,9 +65,14 @@ def compression_by_torque(scene: Scene, postures: Mapping[str, AgentPosture]) ->
 def compression_by_posture(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, PostureSlopes]:
     """The axial force's part."""
     person, slopes = scene.human, _back(scene.human, postures[HUMAN]).slopes
-    joints = dict(zip(person.joints, slopes[3:-12].tolist(), strict=True))
-    feet = dict(zip(SIDES, np.split(slopes[-12:], 2), strict=True))
-    return {HUMAN: PostureSlopes(slopes[:3], joints, foot_wrenches=feet)}
+    last = 3 + len(person.joints)
+    joints = dict(zip(person.joints, slopes[3:last].tolist(), strict=True))
+    return {HUMAN: PostureSlopes(slopes[:3], joints, _by_contact(person.feet, slopes[last:]))}
+
+
+def _by_contact(contacts: Sequence[Contact], slopes: Array) -> dict[str, Array]:
+    """Derivatives by the wrench of each contact, by name."""
+    return {each.name: part for each, part in zip(contacts, np.split(slopes, len(contacts)), strict=True)}
 
 
 def holding_seconds(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:

@@ -23,10 +23,10 @@ class AgentDetail(Record, frozen=True, omit_defaults=True):
         joints_rad: position by name of each joint that moves [rad], of a slide [m].
         torques_n_m: torque by name of each joint that moves [N m], of a slide the force [N]; what the joint
             exerts on its child, positive about its axis.
-        hand_wrenches: on the hand, by side (`left`, `right`) six numbers: force [N], then moment about the
-            grasp point [N m], in the agent's own frame.
-        foot_wrenches: on the foot, likewise: force [N], then moment about the sole's origin [N m], in the
-            frame of the sole, whose z is its normal.
+        wrenches: on the agent, by contact (`left_foot`, `right_foot`, `left_hand`, `right_hand`) six numbers:
+            force [N], then moment [N m]. On a hand the moment is about the grasp point, and both are in the
+            agent's own frame; on a foot it is about the sole's origin, and both are in the frame of the sole,
+            whose z is its normal.
         speeds_rad_s: speed by name of each joint that moves [rad/s], of a slide [m/s]; none of a load held
             still.
     Example:
@@ -37,7 +37,7 @@ class AgentDetail(Record, frozen=True, omit_defaults=True):
         [-0.5, -0.0, 0.85]
         >>> round(person.joints_rad["jLeftElbow_rotz"], 2)
         -0.82
-        >>> force_n, moment_n_m = person.hand_wrenches["left"][:3], person.hand_wrenches["left"][3:]
+        >>> force_n, moment_n_m = person.wrenches["left_hand"][:3], person.wrenches["left_hand"][3:]
         >>> round(force_n[2], 1)
         -13.7
     """
@@ -46,8 +46,7 @@ class AgentDetail(Record, frozen=True, omit_defaults=True):
     base_rpy_rad: tuple[float, ...]
     joints_rad: dict[str, float]
     torques_n_m: dict[str, float]
-    hand_wrenches: dict[str, tuple[float, ...]]
-    foot_wrenches: dict[str, tuple[float, ...]]
+    wrenches: dict[str, tuple[float, ...]]
     speeds_rad_s: dict[str, float] = msgspec.field(default_factory=dict)
 
     def __repr__(self) -> str:
@@ -64,16 +63,14 @@ class LoadCaseDetail(Record, frozen=True):
 
     Attributes:
         torques_n_m: as in `AgentDetail`, like the others.
-        hand_wrenches: six numbers by side.
-        foot_wrenches: six numbers by side.
+        wrenches: six numbers by contact.
     Example:
         >>> design.postures[0].instants[0].disturbed["heavier"]["robot"]
         <load case of 13 joints, |torque| 0.1779 N m>
     """
 
     torques_n_m: dict[str, float]
-    hand_wrenches: dict[str, tuple[float, ...]]
-    foot_wrenches: dict[str, tuple[float, ...]]
+    wrenches: dict[str, tuple[float, ...]]
 
     def __repr__(self) -> str:
         norm = math.hypot(*self.torques_n_m.values())

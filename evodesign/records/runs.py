@@ -10,7 +10,7 @@ from msgspec import Meta
 from evodesign.records.parameters import Constraint, Genome, Objective, Parameter
 from evodesign.tasks import Record
 
-FORMAT_VERSION = 2
+FORMAT_VERSION = 3
 """Version of the records; a reader refuses a log of a later one, and upgrades an earlier one."""
 
 

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from evodesign.body.placement import Placement, Vector, rotate
 from evodesign.body.shape import Box, Shape
 from evodesign.errors import RunError, on_one_line
-from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Payload, Scene
+from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Payload, Scene
 from evodesign.records import AgentDetail, CaseDetail, Task
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Link, Mesh, Tree
@@ -160,16 +160,15 @@ def _wrenches(
     agent: Agent, posture: AgentDetail, world_from_agent: Placement, frames: Mapping[str, Placement]
 ) -> list[ContactWrench]:
     found = []
-    for side in SIDES:
-        force, moment = _halves(posture.hand_wrenches[side])
-        hand = frames[agent.hands[side]].translation
+    for hand in agent.hands:
+        force, moment = _halves(posture.wrenches[hand.name])
         turned = (rotate(world_from_agent.rotation, force), rotate(world_from_agent.rotation, moment))
-        found.append(ContactWrench(agent.name, f"{side}_hand", hand, *turned))
-    for side in SIDES:
-        sole = frames[agent.soles[side]]
-        point, force, moment = _at_center_of_pressure(*_halves(posture.foot_wrenches[side]))
+        found.append(ContactWrench(agent.name, hand.name, frames[hand.frame].translation, *turned))
+    for foot in agent.feet:
+        sole = frames[foot.frame]
+        point, force, moment = _at_center_of_pressure(*_halves(posture.wrenches[foot.name]))
         turned = (rotate(sole.rotation, force), rotate(sole.rotation, moment))
-        found.append(ContactWrench(agent.name, f"{side}_foot", sole.apply(point), *turned))
+        found.append(ContactWrench(agent.name, foot.name, sole.apply(point), *turned))
     return found
 
 

@@ -8,7 +8,12 @@ Format 1 told a case by a height and the names of person and load, and called al
     policy.NAME                                        allocation.NAME
     [[design.policy]], [solver] seeds                  [[design.allocation]], [solver] start_portfolio
 
-Headers of either format may lack the method that solved: it was IPOPT then.
+Formats 1 and 2 told wrenches by part and side:
+
+    format 2                                           format 3
+    hand_wrenches: {left: ..}, foot_wrenches: {..}     wrenches: {left_hand: .., left_foot: ..}
+
+Headers of formats 1 and 2 may lack the method that solved: it was IPOPT then.
 
 A message tells its format itself, a header by its number and another one by its heights, so it can be read
 whatever became of its segment's header.
@@ -17,6 +22,7 @@ whatever became of its segment's header.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import Any, Final
 
 import msgspec
@@ -71,8 +77,43 @@ def upgraded(message: Any) -> Any:
             cases = [_case(each) for each in heights]
             return {**message, "assessment": {**rest, "design": values, "cases": cases}}
         case {"evaluation": number, "heights": list(heights)}:
-            return {"evaluation": number, "cases": [_case(each) for each in heights]}
+            return {"evaluation": number, "cases": [_by_contact(_case(each)) for each in heights]}
+        case {"evaluation": _, "cases": list(cases)}:
+            return {**message, "cases": [_by_contact(each) for each in cases]}
     return message
+
+
+def _by_contact(case: Any) -> Any:
+    """The postures of a case with wrenches by contact."""
+    match case:
+        case {"instants": list(instants)}:
+            return {**case, "instants": [_instant(each) for each in instants]}
+    return case
+
+
+def _instant(told: Any) -> Any:
+    match told:
+        case {"agents": dict(agents), **rest}:
+            disturbed = {"disturbed": _each(_agents, rest.pop("disturbed"))} if "disturbed" in rest else {}
+            return {**rest, "agents": _agents(agents), **disturbed}
+    return told
+
+
+def _agents(told: Any) -> Any:
+    return _each(_agent, told)
+
+
+def _each(change: Callable[[Any], Any], told: Any) -> Any:
+    return {name: change(each) for name, each in told.items()} if isinstance(told, dict) else told
+
+
+def _agent(told: Any) -> Any:
+    match told:
+        case {"hand_wrenches": dict(hands), "foot_wrenches": dict(feet), **rest}:
+            by_contact = {f"{side}_foot": wrench for side, wrench in feet.items()}
+            by_contact |= {f"{side}_hand": wrench for side, wrench in hands.items()}
+            return {**rest, "wrenches": by_contact}
+    return told
 
 
 def _case(told: Any) -> Any:

@@ -6,7 +6,6 @@ replayed or computed with relies on what is checked here: names, lengths and num
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 import msgspec
@@ -30,7 +29,6 @@ LARGEST_POPULATION: Final = 10**5
 """More designs than any search asks for at once."""
 
 AGENTS: Final = frozenset(("robot", "human"))
-SIDES: Final = frozenset(("left", "right"))
 
 
 def header_fault(header: RunHeader) -> str:
@@ -136,6 +134,12 @@ def _instant(instant: InstantDetail) -> str:
         return "a case has not one posture of robot and person"
     if any(agents.keys() != AGENTS for agents in instant.disturbed.values()):
         return "a disturbance has not robot and person"
+    if any(
+        each.wrenches.keys() != instant.agents[name].wrenches.keys()
+        for agents in instant.disturbed.values()
+        for name, each in agents.items()
+    ):
+        return "a disturbance has not the contacts of its posture"
     found: list[AgentDetail | LoadCaseDetail] = [*instant.agents.values()]
     found += [each for agents in instant.disturbed.values() for each in agents.values()]
     if not all(map(_complete, found)):
@@ -144,17 +148,11 @@ def _instant(instant: InstantDetail) -> str:
 
 
 def _complete(agent: AgentDetail | LoadCaseDetail) -> bool:
-    """Whether places have three components, and there is a wrench of six for each hand and foot."""
+    """Whether places have three components and wrenches six."""
     places = (agent.base_position_m, agent.base_rpy_rad) if isinstance(agent, AgentDetail) else ()
     return all(len(place) == 3 for place in places) and all(
-        wrenches.keys() == SIDES and all(len(wrench) == 6 for wrench in wrenches.values())
-        for wrenches in _wrenches(agent)
+        len(wrench) == 6 for wrench in agent.wrenches.values()
     )
-
-
-def _wrenches(agent: AgentDetail | LoadCaseDetail) -> Iterator[Mapping[str, Sequence[float]]]:
-    yield agent.hand_wrenches
-    yield agent.foot_wrenches
 
 
 def _counts(*numbers: int) -> bool:

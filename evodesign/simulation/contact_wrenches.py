@@ -11,15 +11,15 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
-from evodesign.mechanics.scene import SIDES
 from evodesign.posture.results import Array
 from evodesign.simulation.model import AgentParts, SimulatedScene
 
 
 def foot_wrenches(found: SimulatedScene, parts: AgentParts) -> Array:
-    """On the left and right foot, force [N] and moment [N m], in the sole frame, shape (2, 6)."""
+    """On each foot, force [N] and moment [N m], in the sole frame, shape (feet, 6)."""
     model, data = found.model, found.data
-    wrenches, rows = np.zeros((2, 6)), {geom: row for row, geom in enumerate(parts.soles.values())}
+    rows = {geom: row for row, geom in enumerate(parts.soles.values())}
+    wrenches = np.zeros((len(rows), 6))
     for number in range(data.ncon):
         contact, force = data.contact[number], np.zeros(6)
         row = rows.get(int(contact.geom[1]))
@@ -35,19 +35,19 @@ def foot_wrenches(found: SimulatedScene, parts: AgentParts) -> Array:
 
 
 def hand_wrenches(found: SimulatedScene, parts: AgentParts) -> Array:
-    """On the left and right hand, in the agent's frame and about the grasp point, likewise."""
+    """On each hand, in the agent's frame and about the grasp point, likewise."""
     model, data = found.model, found.data
     first = int(model.body_dofadr[found.load])
     jacobian = data.efc_J.reshape(data.nefc, model.nv)[:, first : first + 6]
     grasps = data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
     agent_from_world = parts.agent.turn.T
-    wrenches = np.zeros((2, 6))
-    for row, side in enumerate(SIDES):
-        number = model.equality(f"{parts.agent.name}/{side}_hand").id
+    wrenches = np.zeros((len(parts.hands), 6))
+    for row, (hand, site) in enumerate(parts.hands.items()):
+        number = model.equality(f"{parts.agent.name}/{hand}").id
         mine = grasps & (data.efc_id == number)
         force, moment = np.split(jacobian[mine].T @ data.efc_force[mine], 2)
         moment = data.xmat[found.load].reshape(3, 3) @ moment  # a free body turns in its own axes
-        lever = data.site_xpos[parts.hands[side]] - data.xpos[found.load]
+        lever = data.site_xpos[site] - data.xpos[found.load]
         moment = moment - np.cross(lever, force)
         wrenches[row] = np.r_[-agent_from_world @ force, -agent_from_world @ moment]
     return wrenches

@@ -21,7 +21,6 @@ import numpy as np
 
 from evodesign.errors import InputError
 from evodesign.mechanics.floating_base import ROOT
-from evodesign.mechanics.scene import SIDES
 from evodesign.posture.results import Array
 from evodesign.simulation.model import AgentParts, SimulatedScene
 
@@ -53,9 +52,9 @@ def joint_inertias(found: SimulatedScene, parts: AgentParts) -> Array:
     mass = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
     at_hand = float(model.body_mass[found.load]) / 4.0
-    for side in SIDES:
+    for hand in parts.hands.values():
         jacobian = np.zeros((3, model.nv))
-        mujoco.mj_jacSite(model, data, jacobian, None, parts.hands[side])
+        mujoco.mj_jacSite(model, data, jacobian, None, hand)
         mass += at_hand * jacobian.T @ jacobian
     inertias = mass[parts.rates, parts.rates].copy()
     free = int(model.body_dofadr[parts.root])

@@ -27,7 +27,7 @@ import numpy as np
 from evodesign.body.placement import Placement, quaternion_wxyz
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.contact import Ground
-from evodesign.mechanics.scene import SIDES, Agent, Grasp, Payload, Scene
+from evodesign.mechanics.scene import Agent, Contact, Grasp, Payload, Scene
 from evodesign.posture.results import AgentPosture, Array
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.frames import link_frames
@@ -130,8 +130,8 @@ def simulated_scene(
     for agent in scene.agents:
         frames[agent.name] = _frames(agent, trees[agent.name], postures[agent.name])
         _add_agent(spec, agent, trees[agent.name], scene.ground, give)
-        for side in SIDES:
-            _add_grasp(spec, load, scene.payload, agent, side, frames[agent.name], give)
+        for hand in agent.hands:
+            _add_grasp(spec, load, scene.payload, agent, hand, frames[agent.name], give)
     compiled = spec.compile()
     data = mujoco.MjData(compiled)
     parts = {agent.name: _parts(compiled, agent) for agent in scene.agents}
@@ -175,12 +175,12 @@ def _add_agent(spec: Any, agent: Agent, tree: Tree, ground: Ground, give: Mappin
         geom.contype = geom.conaffinity = 0
     for joint in part.joints:
         joint.actfrclimited = mujoco.mjtLimited.mjLIMITED_FALSE  # the limits are the actuators'
-    size = [agent.sole_size.length / 2.0, agent.sole_size.width / 2.0, SOLE_HALF_THICKNESS]
-    for side in SIDES:
-        part.body(agent.soles[side]).add_geom(
-            name=f"{side}_sole",
+    for foot in agent.feet:
+        sole = foot.sole
+        part.body(foot.frame).add_geom(
+            name=f"{foot.name}_sole",
             type=mujoco.mjtGeom.mjGEOM_BOX,
-            size=size,
+            size=[sole.length / 2.0, sole.width / 2.0, SOLE_HALF_THICKNESS],
             pos=[0.0, 0.0, SOLE_HALF_THICKNESS],
             friction=[ground.friction, 0.0, 0.0],
             priority=1,
@@ -191,7 +191,8 @@ def _add_agent(spec: Any, agent: Agent, tree: Tree, ground: Ground, give: Mappin
             group=3,
             **give,
         )
-        part.body(agent.hands[side]).add_site(name=f"{side}_hand")
+    for hand in agent.hands:
+        part.body(hand.frame).add_site(name=hand.name)
     for joint in agent.joints:
         _add_motor(part, joint, _torque_limit(agent, tree, joint))
     spec.attach(part, prefix=f"{agent.name}/", frame=spec.worldbody.add_frame())
@@ -225,14 +226,14 @@ def _add_grasp(
     load: Any,
     payload: Payload,
     agent: Agent,
-    side: str,
+    hand: Contact,
     frames: Mapping[str, Placement],
     give: Mapping[str, Any],
 ) -> None:
     """A hand on the load: its place, and with rigid grasps its turn in the first posture."""
-    name = f"{agent.name}/{side}_hand"
-    grip = agent.turn @ payload.grasp_point(agent, side)
-    turn = quaternion_wxyz(frames[agent.hands[side]].rotation)
+    name = f"{agent.name}/{hand.name}"
+    grip = agent.turn @ payload.grasp_point(agent, hand)
+    turn = quaternion_wxyz(frames[hand.frame].rotation)
     site = load.add_site(name=f"{name}_grip", pos=grip, quat=turn)
     rigid = payload.grasp is Grasp.RIGID
     spec.add_equality(
@@ -253,8 +254,8 @@ def _parts(model: mujoco.MjModel, agent: Agent) -> AgentParts:
         positions=np.array([model.joint(name).qposadr[0] for name in named]),
         rates=np.array([model.joint(name).dofadr[0] for name in named]),
         actuators=np.array([model.actuator(name).id for name in named]),
-        soles={side: model.geom(f"{agent.name}/{side}_sole").id for side in SIDES},
-        hands={side: model.site(f"{agent.name}/{side}_hand").id for side in SIDES},
+        soles={foot.name: model.geom(f"{agent.name}/{foot.name}_sole").id for foot in agent.feet},
+        hands={hand.name: model.site(f"{agent.name}/{hand.name}").id for hand in agent.hands},
     )
 
 

@@ -18,7 +18,7 @@ from collections.abc import Mapping
 import mujoco
 import numpy as np
 
-from evodesign.mechanics.scene import SIDES, Scene
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import Array
 from evodesign.simulation.contact_wrenches import foot_wrenches, hand_wrenches
 from evodesign.simulation.feedback import Feedback, set_gains
@@ -83,7 +83,7 @@ def _row(found: SimulatedScene) -> dict[str, Array]:
         row[f"{name}.roots"] = np.r_[data.xpos[parts.root], data.xquat[parts.root]]
         row[f"{name}.positions"] = data.qpos[parts.positions]
         row[f"{name}.torques"] = data.actuator_force[parts.actuators] - late
-        row[f"{name}.soles"] = np.array([found.sole_origin(parts.soles[side]) for side in SIDES])
+        row[f"{name}.soles"] = np.array([found.sole_origin(sole) for sole in parts.soles.values()])
     return row
 
 

@@ -27,7 +27,7 @@ from evodesign.human.coupled_joints import rhythms
 from evodesign.human.measured_posture import MARK, SIDES, HumanPosture, PostureRow, measured_posture
 from evodesign.mechanics.contact import SoleSize
 from evodesign.mechanics.floating_base import ROOT, BodyState
-from evodesign.mechanics.scene import HUMAN, Agent, Role
+from evodesign.mechanics.scene import HUMAN, Agent, Role, two_hands_two_feet
 from evodesign.posture.check import AgentModel
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.seeking.measured_starts import posture_of_features
@@ -91,9 +91,7 @@ def agent_of(person: Person, posture: HumanPosture, rows: Sequence[PostureRow] |
         role=Role.PERSON,
         tree=human_tree(person),
         joints=DEFAULT_JOINTS,
-        hands=HANDS,
-        soles=SOLES,
-        sole_size=SoleSize(*sole_size(person)),
+        contacts=two_hands_two_feet(HANDS, SOLES, SoleSize(*sole_size(person))),
         trunk=TRUNK,
         quarters=2,
     )

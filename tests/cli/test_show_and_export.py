@@ -107,7 +107,7 @@ def test_card_shows_the_logged_numbers(run: Path, capsys: pytest.CaptureFixture[
         )
         for joint, values in shown.items():
             assert values == [rounded(at[joint]) for at in torques]
-        feet = [height.agents[agent].foot_wrenches["left"] for height in detail.cases]
+        feet = [height.agents[agent].wrenches["left_foot"] for height in detail.cases]
         expected = [rounded(sum(part**2 for part in wrench[:3]) ** 0.5) for wrench in feet]
         assert [row[2:] for row in rows if row[:2] == [agent, "left foot"]] == [expected]
 

@@ -71,7 +71,7 @@ def test_card_names_the_case_of_largest_torque_and_contact_force(
             case = sizes[joint].idxmax()
             numbers = [rounded(sizes[joint].mean()), rounded(torques[joint][case])]
             assert [agent, joint, *numbers, case] in rows
-        forces = [float(np.linalg.norm(posture.hand_wrenches["left"][:3])) for posture in postures]
+        forces = [float(np.linalg.norm(posture.wrenches["left_hand"][:3])) for posture in postures]
         numbers = [rounded(float(np.mean(forces))), rounded(max(forces))]
         assert [agent, "left hand", *numbers, names[int(np.argmax(forces))]] in rows
 

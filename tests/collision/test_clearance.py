@@ -192,7 +192,7 @@ def test_an_agent_without_any_shape_touches_nothing_and_leaves_the_others_what_t
     frames = {"one": Placement(), "other": Placement()}
     placed = bare.placed(frames)
     assert placed.overlapping(places_of(placed.names, [("one", "other")])) == []
-    assert checked_pairs(tree, ["joint"], {"left": "other"}, {"left": "one"}) == ()
+    assert checked_pairs(tree, ["joint"], ["other"], ["one"]) == ()
     two = SolidBodies(("a", "b"), tuple(solid for link in map(_ball, "ab") for solid in solids_of(link)))
     there = {"a": Placement(), "b": Placement(translation=(0.3, 0.0, 0.0))}
     both = placed.beside(two.placed(there))
@@ -207,7 +207,7 @@ def test_a_scene_with_an_agent_without_any_shape_finds_what_the_others_overlap_w
     def at(links: Sequence[str]) -> np.ndarray:
         return np.array([np.eye(4) for _ in links])
 
-    found = scene.near({"robot": (1.0, at), "human": (-1.0, at)}, 0.15)
+    found = scene.near({"robot": (np.eye(3), at), "human": (np.diag([-1.0, -1.0, 1.0]), at)}, 0.15)
     assert {(gap.first, gap.second): pytest.approx(gap.distance) for gap in found} == {
         ("human a", "load"): -0.05,
         ("human a", "floor"): -0.1,

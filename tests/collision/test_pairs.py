@@ -153,8 +153,8 @@ def test_each_part_of_a_foot_is_kept_from_that_of_the_other(problem: DesignProbl
         agent.name: feet_pairs(
             agent.tree,
             agent.joints,
-            agent.soles,
-            checked_pairs(agent.tree, agent.joints, agent.hands, agent.soles),
+            agent.foot_frames,
+            checked_pairs(agent.tree, agent.joints, agent.hand_frames, agent.foot_frames),
         )
         for agent in problem.scene.agents
     }
@@ -162,19 +162,19 @@ def test_each_part_of_a_foot_is_kept_from_that_of_the_other(problem: DesignProbl
     assert set(feet["human"]) == {("LeftFoot", "RightFoot"), ("LeftToe", "RightToe")}
     assert all(one.lower().lstrip("lr") != other for pairs in feet.values() for one, other in pairs)
     agent = problem.scene.human
-    assert feet_pairs(agent.tree, agent.joints, agent.soles, [("LeftToe", "RightToe")]) == (
+    assert feet_pairs(agent.tree, agent.joints, agent.foot_frames, [("LeftToe", "RightToe")]) == (
         ("LeftToe", "RightToe"),
     )
-    assert feet_pairs(agent.tree, agent.joints, agent.soles, ()) == ()
+    assert feet_pairs(agent.tree, agent.joints, agent.foot_frames, ()) == ()
 
 
 def test_hands_hold_and_forearms_do_not(problem: DesignProblem) -> None:
     robot, person = problem.scene.robot, problem.scene.human
-    holding = holding_links(robot.tree, robot.joints, robot.hands)
+    holding = holding_links(robot.tree, robot.joints, robot.hand_frames)
     assert {"l_hand", "r_hand", "l_wrist_1"} <= holding
     assert not holding & {"l_forearm", "chest"}
-    assert "LeftHand" in holding_links(person.tree, person.joints, person.hands)
-    assert "LeftForeArm" not in holding_links(person.tree, person.joints, person.hands)
+    assert "LeftHand" in holding_links(person.tree, person.joints, person.hand_frames)
+    assert "LeftForeArm" not in holding_links(person.tree, person.joints, person.hand_frames)
 
 
 def test_fingers_that_stand_still_are_part_of_the_hand() -> None:
@@ -197,7 +197,7 @@ def test_fingers_that_stand_still_are_part_of_the_hand() -> None:
         for each, parent in parents.items()
     )
     tree = Tree("gripper", tuple(links), joints)
-    assert holding_links(tree, ["hand"], {"left": "hand"}) == {"hand", *names[2:]}
+    assert holding_links(tree, ["hand"], ["hand"]) == {"hand", *names[2:]}
     assert not [pair for pair in collision_pairs(tree, ["hand"]) if "arm" not in pair]
     exempt = exempt_pairs(tree, tree.actuated)
     assert "postures" in exempt["left c", "right c"]

@@ -194,8 +194,8 @@ def test_a_point_grasp_that_passes_a_moment_is_seen(problem: DesignProblem) -> N
     instant = instants_of(layout_of(program), forms, scene, values)[0]
     robot = instant.postures[ROBOT]
     moment = np.array([0.0, 0.0, 0.0, 0.0, 1.0, 0.0])
-    twisted = {side: wrench + moment for side, wrench in robot.hand_wrenches.items()}
-    postures = {**instant.postures, ROBOT: replace(robot, hand_wrenches=twisted)}
+    twisted = {name: wrench + ("hand" in name) * moment for name, wrench in robot.wrenches.items()}
+    postures = {**instant.postures, ROBOT: replace(robot, wrenches=twisted)}
     found = {r.name: r.size for r in checker_of(scene).residuals(replace(instant, postures=postures), HEIGHT)}
     assert found["load.grasp"] == pytest.approx(1.0)
 

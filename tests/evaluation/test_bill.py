@@ -111,11 +111,11 @@ def test_mujoco_holds_every_posture_with_motors_within_their_rating(
             posture = solution.postures[ROBOT]
             model, data = posed(result.tree, posture)
             for side in SIDES:
-                hand, sole = (data.body(frame[side]) for frame in (robot.hands, robot.soles))
+                hand, sole = (data.body(robot.frame(f"{side}_{part}")) for part in ("hand", "foot"))
                 turn = np.array(sole.xmat).reshape(3, 3)
-                foot = posture.foot_wrenches[side]
+                foot = posture.wrenches[f"{side}_foot"]
                 for body, wrench in (
-                    (hand, posture.hand_wrenches[side]),
+                    (hand, posture.wrenches[f"{side}_hand"]),
                     (sole, np.concatenate([turn @ foot[:3], turn @ foot[3:]])),
                 ):
                     mujoco.mj_applyFT(

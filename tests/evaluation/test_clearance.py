@@ -40,16 +40,16 @@ def soles_apart(problem: DesignProblem, result: DesignResult) -> list[float]:
     robot = problem.scene.robot
     model, (length, width) = (
         AgentModel.of(robot, result.tree),
-        (robot.sole_size.length, robot.sole_size.width),
+        (robot.feet[0].sole.length, robot.feet[0].sole.width),
     )
     found = []
     for solution in result.cases:
         state = model.at(solution.postures[ROBOT])
         reached = {}
-        for side, sole in robot.soles.items():
-            rotation, origin = state.pose(sole)
+        for foot in robot.feet:
+            rotation, origin = state.pose(foot.frame)
             corners = [[x * length / 2.0, y * width / 2.0, 0.0] for x in (-1, 1) for y in (-1, 1)]
-            reached[side] = (origin + np.array(corners) @ rotation.T)[:, 1]
+            reached[foot.side] = (origin + np.array(corners) @ rotation.T)[:, 1]
         found.append(float(reached["left"].min() - reached["right"].max()))
     return found
 

@@ -121,7 +121,7 @@ def test_closed_forms_of_the_design_have_casadis_derivatives(
     tree = wide.space.resized(wide.scene.robot.tree, ca.vertsplit(design))
     poses = forward(tree, Pose(ca.SX.eye(3), ca.SX.zeros(3)), {})
     mass, center = center_of_mass(tree, poses)
-    above = center[2] - poses[wide.scene.robot.soles["left"]].position[2]
+    above = center[2] - poses[wide.scene.robot.frame("left_foot")].position[2]
     both = ca.Function("both", [design], [ca.jacobian(mass, design), ca.jacobian(above, design)])
     for name, exact in zip(("mass", "com_height"), both(derivative.values), strict=True):
         expected = np.asarray(exact).ravel()

@@ -87,7 +87,7 @@ def test_own_objective_reaches_the_processes(tmp_path: Path) -> None:
     assert len(run) == 6
     for design in run.front:
         largest = [
-            max(wrench[2] for wrench in posture.agents["robot"].foot_wrenches.values())
+            max(posture.agents["robot"].wrenches[name][2] for name in ("left_foot", "right_foot"))
             for posture in run.postures(design.number or 0)
         ]
         found = design.objectives["own_objective:foot_force"]

@@ -19,7 +19,7 @@ from evodesign.guess.body_plan import body_plan
 from evodesign.guess.problem_text import guessed_problem, inertia_rule
 from evodesign.mechanics.elbow import elbow
 from evodesign.mechanics.load_share import share_interval
-from evodesign.mechanics.scene import SIDES, Agent, Scene
+from evodesign.mechanics.scene import Agent, Scene
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.left_out import left_out
@@ -61,8 +61,8 @@ def weighed(agent: Agent, tree: Tree, posture: AgentPosture) -> float:
         )
     pin.centerOfMass(model, data, q)
     moments = []
-    for side in SIDES:
-        bend = elbow(agent, side)
+    for hand in agent.hands:
+        bend = elbow(agent, hand)
         assert bend is not None
         joint = model.getJointId(bend.joint)
         lever = (data.oMi[joint].act(data.com[joint]) - data.oMi[joint].translation)[:2]

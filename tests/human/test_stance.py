@@ -43,6 +43,6 @@ def test_keys_of_limits_hold_for_everybody_and_a_robot_has_none_of_its_own(repos
     scene = build_problem(ProblemSource("p.toml", text, source.files)).scene
     assert scene.stance_of(scene.robot) == scene.stance == given.stance
     own = scene.stance_of(scene.human)
-    assert own.feet_apart == feet_apart(scene.human.tree, scene.human.sole_size.width)
+    assert own.feet_apart == feet_apart(scene.human.tree, scene.human.feet[0].sole.width)
     assert own.trunk_clearance == trunk_clearance(scene.human.tree)
     assert own.feet_stagger == scene.stance.feet_stagger

@@ -48,7 +48,7 @@ def posture(tree: Tree, agent: Agent, rng: np.random.Generator) -> Case:
         name: rng.uniform(max(tree.joint_by_name[name].lower, -3), min(tree.joint_by_name[name].upper, 3))
         for name in tree.actuated
     }
-    frames = [agent.hands[side] for side in SIDES] + [agent.soles[side] for side in SIDES]
+    frames = [agent.frame(f"{side}_hand") for side in SIDES] + [agent.frame(f"{side}_foot") for side in SIDES]
     wrenches = {frame: rng.normal(size=6) * 100.0 for frame in frames}
     return Case(tree, agent, rng.normal(size=3), rng.uniform(-1.2, 1.2, 3), joints, wrenches)
 
@@ -78,8 +78,9 @@ def cranes(problem: DesignProblem) -> Iterator[Case]:
     rng = np.random.default_rng(4)
     for _ in range(CASES // 4):
         tree = crane()
-        ends = dict.fromkeys(SIDES, tree.links[-1].name)
-        yield posture(tree, replace(problem.scene.robot, tree=tree, hands=ends, soles=ends), rng)
+        robot, end = problem.scene.robot, tree.links[-1].name
+        contacts = tuple(replace(contact, frame=end) for contact in robot.contacts)
+        yield posture(tree, replace(robot, tree=tree, contacts=contacts), rng)
 
 
 def ours(case: Case) -> tuple[dict[str, Pose], np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

@@ -11,7 +11,7 @@ import pytest
 from evodesign.body.placement import Placement
 from evodesign.guess.problem_text import guessed_problem
 from evodesign.mechanics.elbow import elbow
-from evodesign.mechanics.scene import SIDES, Agent
+from evodesign.mechanics.scene import SIDES, Agent, Contact
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import source_of
 from evodesign.tree.frames import link_frames
@@ -27,9 +27,13 @@ ELBOWS = {
 }
 
 
+def hand_of(agent: Agent, side: str) -> Contact:
+    return next(hand for hand in agent.hands if hand.side == side)
+
+
 def point(agent: Agent, side: str) -> np.ndarray:
     """The elbow with all joints at zero, in the root's frame."""
-    found = elbow(agent, side)
+    found = elbow(agent, hand_of(agent, side))
     assert found is not None
     return np.array(link_frames(agent.tree, Placement(), {})[found.link].apply(found.place))
 
@@ -41,7 +45,7 @@ def test_elbows_of_the_default_problem_are_mirror_images_at_both_ends_of_upper_a
         (problem.scene.robot, ("l_elbow", "r_elbow")),
         (problem.scene.human, ("jLeftElbow_rotz", "jRightElbow_rotz")),
     ):
-        found = [elbow(agent, side) for side in SIDES]
+        found = [elbow(agent, hand) for hand in agent.hands]
         assert tuple(each.joint for each in found if each) == joints
         left, right = (point(agent, side) for side in SIDES)
         assert left == pytest.approx(right * [1.0, -1.0, 1.0], abs=1e-12)
@@ -70,9 +74,9 @@ def test_a_joints_origin_may_lie_anywhere_on_its_axis(problem: DesignProblem) ->
 def test_an_arm_that_does_not_move_has_no_elbow(problem: DesignProblem) -> None:
     robot = problem.scene.robot
     legs = tuple(name for name in robot.joints if "elbow" not in name and "shoulder" not in name)
-    assert elbow(replace(robot, joints=legs), "left") is not None, "the wrist bends it"
+    assert elbow(replace(robot, joints=legs), robot.hands[0]) is not None, "the wrist bends it"
     stiff = tuple(name for name in legs if "wrist" not in name)
-    assert elbow(replace(robot, joints=stiff), "left") is None
+    assert elbow(replace(robot, joints=stiff), robot.hands[0]) is None
 
 
 @pytest.mark.needs_robots
@@ -82,7 +86,7 @@ def test_public_humanoids_have_the_elbows_that_their_makers_name(name: str) -> N
     tables = tomllib.loads(guessed_problem(tree, str(HUMANOIDS[name])).text)
     tables["robot"]["meshes"] = False
     robot = build_problem(source_of(tables)).scene.robot
-    found = [elbow(robot, side) for side in SIDES]
+    found = [elbow(robot, hand) for hand in robot.hands]
     assert [each.joint for each in found if each] == [ELBOWS[name], right_of(ELBOWS[name])]
     left, right = (point(robot, side) for side in SIDES)
     assert left == pytest.approx(right * [1.0, -1.0, 1.0], abs=1e-3)

@@ -88,7 +88,7 @@ def test_states_of_one_body_do_not_mix(problem: DesignProblem) -> None:
     """They compute in the same memory."""
     tree = problem.scene.robot.tree
     body, rng = FloatingBody.of_tree(tree, tree.actuated, np.eye(3)), np.random.default_rng(0)
-    link, still = problem.scene.robot.hands["left"], np.zeros(body.size)
+    link, still = problem.scene.robot.frame("left_hand"), np.zeros(body.size)
     places = [
         Configuration(rng.uniform(-1, 1, 3), rng.uniform(-1, 1, 3), dict.fromkeys(tree.actuated, 0.1 * k))
         for k in range(2)

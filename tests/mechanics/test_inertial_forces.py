@@ -30,7 +30,7 @@ def test_a_moving_tree_takes_what_inverse_dynamics_says(problem: DesignProblem, 
     inertial = list(inertial_wrenches(agent.tree, poses, root, by_name[1], by_name[2]))
     found = cut(agent.tree, poses, inertial)
 
-    posture = AgentPosture(position, angles, by_name[0], by_name[0], {}, {})
+    posture = AgentPosture(position, angles, by_name[0], by_name[0], {})
     state = AgentModel.of(agent, agent.tree).at(posture, AgentMotion(rates, changes))
     base_in_world = np.array(base.rotation)
     torques = [float(found.torques[name]) for name in agent.joints]

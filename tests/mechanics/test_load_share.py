@@ -26,7 +26,7 @@ def lever_rule(scene: Scene, payload: Payload, moment: float) -> tuple[float, fl
 
     s x_r + (1 - s) x_h = c + (4 m + X (z_r - z_h)) / m g
     """
-    points = {agent.name: payload.grasp_point(agent, "left") for agent in scene.agents}
+    points = {agent.name: payload.grasp_point(agent, agent.hands[0]) for agent in scene.agents}
     x_robot, x_human = points[ROBOT][0], -points[HUMAN][0]
     weight = payload.mass * GRAVITY
     spare = (4.0 * moment + scene.stance.push * abs(points[ROBOT][2] - points[HUMAN][2])) / weight
@@ -48,10 +48,10 @@ def test_shares_are_those_of_the_lever_rule(
     scene: Scene, offset: float, moment: float, mass: float, lift: float
 ) -> None:
     points = {
-        (ROBOT, "left"): (-0.25, 0.2, lift),
-        (ROBOT, "right"): (-0.25, -0.2, lift),
-        (HUMAN, "left"): (0.2, -0.2, 0.0),
-        (HUMAN, "right"): (0.2, 0.2, 0.0),
+        (ROBOT, "left_hand"): (-0.25, 0.2, lift),
+        (ROBOT, "right_hand"): (-0.25, -0.2, lift),
+        (HUMAN, "left_hand"): (0.2, -0.2, 0.0),
+        (HUMAN, "right_hand"): (0.2, 0.2, 0.0),
     }
     payload = Payload(BOX, mass, (offset, 0.0, 0.0), Grasp.RIGID, moment, points)
     found = share_interval(replace(scene, payload=payload))
@@ -67,7 +67,7 @@ def test_hands_that_transmit_any_moment_leave_every_share(scene: Scene) -> None:
 def test_loads_that_no_hands_can_balance_have_no_share(scene: Scene) -> None:
     """Four points on one line transmit no moment about it."""
     points = {
-        (agent, side): (0.0, y, 0.0)
+        (agent, f"{side}_hand"): (0.0, y, 0.0)
         for agent in (ROBOT, HUMAN)
         for side, y in (("left", 0.2), ("right", -0.2))
     }

@@ -22,7 +22,12 @@ def torques(
     pose = Pose(euler_rotation(ca.DM(base[3:])), ca.DM(base[:3]))
     poses = forward(agent.tree, pose, joints)
     applied = [
-        AppliedWrench(agent.soles[side], poses[agent.soles[side]].position, ca.DM(f[:3]), ca.DM(f[3:]))
+        AppliedWrench(
+            agent.frame(f"{side}_foot"),
+            poses[agent.frame(f"{side}_foot")].position,
+            ca.DM(f[:3]),
+            ca.DM(f[3:]),
+        )
         for side, f in feet.items()
     ]
     return {name: float(value) for name, value in cut(agent.tree, poses, applied).torques.items()}

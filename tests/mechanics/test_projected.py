@@ -19,7 +19,7 @@ from evodesign.human.anthropometry import Person
 from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
 from evodesign.mechanics.balance import GRAVITY, AppliedWrench, cut
-from evodesign.mechanics.coupled import PAYLOAD, ContactKind, CoupledModel, CoupledSystem, level_load
+from evodesign.mechanics.coupled import PAYLOAD, CoupledModel, CoupledSystem, level_load
 from evodesign.mechanics.dynamics import bias, mass_matrix
 from evodesign.mechanics.floating_base import Configuration
 from evodesign.mechanics.projected import (
@@ -116,14 +116,15 @@ def cut_rows(case: Case, wrenches: np.ndarray, system: CoupledSystem) -> ca.SX:
         poses = forward(tree, base, place.joints)
         applied = []
         for side in SIDES:
-            sole, hand = poses[agent.soles[side]], poses[agent.hands[side]]
-            foot = system.wrenches_of(agent.name, ContactKind.FOOT, wrenches)[side]
-            grip = [*system.wrenches_of(agent.name, ContactKind.HAND, wrenches)[side], 0.0, 0.0, 0.0]
+            sole, hand = poses[agent.frame(f"{side}_foot")], poses[agent.frame(f"{side}_hand")]
+            foot = system.wrenches_of(agent.name, wrenches)[f"{side}_foot"]
+            grip = [*system.wrenches_of(agent.name, wrenches)[f"{side}_hand"], 0.0, 0.0, 0.0]
             force, moment = ca.vertcat(*grip[:3]), ca.vertcat(*grip[3:6])
-            applied.append(AppliedWrench(agent.hands[side], hand.position, force, moment))
+            applied.append(AppliedWrench(agent.frame(f"{side}_hand"), hand.position, force, moment))
             parts = (sole.rotation @ ca.vertcat(*foot[:3]), sole.rotation @ ca.vertcat(*foot[3:]))
-            applied.append(AppliedWrench(agent.soles[side], sole.position, *parts))
-            point = turn @ ca.DM(case.scene.payload.grasp_point(agent, side))
+            applied.append(AppliedWrench(agent.frame(f"{side}_foot"), sole.position, *parts))
+            held = next(each for each in agent.hands if each.side == side)
+            point = turn @ ca.DM(case.scene.payload.grasp_point(agent, held))
             pushes.append(-turn @ force)
             turns.append(-turn @ moment - ca.cross(point, turn @ force))
         balance = cut(tree, poses, applied)
@@ -250,16 +251,11 @@ def places_of(postures: Mapping[str, AgentPosture], height: float) -> dict[str, 
 
 def wrenches_of(postures: Mapping[str, AgentPosture], system: CoupledSystem) -> np.ndarray:
     """The solver's wrenches in the order of f."""
-    kinds = {
-        (name, kind): wrenches
-        for name, posture in postures.items()
-        for kind, wrenches in (
-            (ContactKind.FOOT, posture.foot_wrenches),
-            (ContactKind.HAND, posture.hand_wrenches),
-        )
-    }
     return np.concatenate(
-        [kinds[c.agent, c.kind][c.side][: c.rows.stop - c.rows.start] for c in system.contacts]
+        [
+            postures[each.agent].wrenches[each.contact.name][: each.rows.stop - each.rows.start]
+            for each in system.contacts
+        ]
     )
 
 
@@ -302,10 +298,11 @@ def test_limits_of_the_ground_cost_torque(problem: DesignProblem, evaluator: Eva
         wrenches = contact_wrenches(system, torques)
         assert np.abs(wrenches - wrenches_of(height.postures, system)).max() < 1e-4
         for agent in problem.scene.agents:
-            for foot in system.wrenches_of(agent.name, ContactKind.FOOT, wrenches).values():
-                x, y = center_of_pressure(foot)
-                assert abs(x) <= agent.sole_size.length / 2.0 + 1e-6
-                assert abs(y) <= agent.sole_size.width / 2.0 + 1e-6
+            found_wrenches = system.wrenches_of(agent.name, wrenches)
+            for foot in agent.feet:
+                x, y = center_of_pressure(found_wrenches[foot.name])
+                assert abs(x) <= foot.sole.length / 2.0 + 1e-6
+                assert abs(y) <= foot.sole.width / 2.0 + 1e-6
 
 
 def random_velocities(case: Case, rng: np.random.Generator) -> dict[str, np.ndarray]:

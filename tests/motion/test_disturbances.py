@@ -94,8 +94,8 @@ def asked(
         outside[frame.parentJoint] += frame.placement.act(force)
 
     for side in SIDES:
-        applied(agent.hands[side], posture.hand_wrenches[side], own_axes=False)
-        applied(agent.soles[side], posture.foot_wrenches[side], own_axes=True)
+        applied(agent.frame(f"{side}_hand"), posture.wrenches[f"{side}_hand"], own_axes=False)
+        applied(agent.frame(f"{side}_foot"), posture.wrenches[f"{side}_foot"], own_axes=True)
     if push.any():
         applied(agent.pushed_frame, np.r_[push, 0.0, 0.0, 0.0], own_axes=False)
     forces = pin.StdVec_Force()
@@ -138,9 +138,9 @@ def test_hands_carry_what_a_disturbance_makes_of_the_load(pushed: Lifted, found:
             force = np.array([0.0, 0.0, -mass * (GRAVITY + motion.load_acceleration)])
             force += disturbance.push_on(PushedAt.LOAD)
             for agent in scene.agents:
-                wrenches = instant.disturbed[disturbance.name][agent.name].hand_wrenches
+                wrenches = instant.disturbed[disturbance.name][agent.name].wrenches
                 turned = np.diag(agent.turn)
-                force -= sum(turned * wrenches[side][:3] for side in SIDES)
+                force -= sum(turned * wrenches[f"{side}_hand"][:3] for side in SIDES)
             assert force == pytest.approx(0.0, abs=1e-5)
 
 

@@ -147,7 +147,7 @@ def _standing(form: Form, variables: Sequence[object], posture: AgentPosture) ->
     """The left sole where it is in a posture."""
 
     def sole(base: Pose, joints: dict[str, object]) -> ca.SX:
-        pose = forward(form.agent.tree, base, joints)[form.agent.soles["left"]]
+        pose = forward(form.agent.tree, base, joints)[form.agent.frame("left_foot")]
         return ca.vertcat(pose.position[:2], pose.rotation[1, 0])
 
     named = {v.name: v.value for v in variables}  # type: ignore[attr-defined]
@@ -229,10 +229,13 @@ def test_mujoco_asks_for_the_same_torques(lifted: Lifted, solution: LiftSolution
         outside = np.zeros(model.nv)
         frames = link_frames(agent.tree, root, dict(posture.joints))
         for side in SIDES:
-            hand, sole = agent.hands[side], agent.soles[side]
+            hand, sole = agent.frame(f"{side}_hand"), agent.frame(f"{side}_foot")
             turn = np.array(frames[sole].rotation)
-            foot = posture.foot_wrenches[side]
-            on_foot, on_hand = np.concatenate([turn @ foot[:3], turn @ foot[3:]]), posture.hand_wrenches[side]
+            foot = posture.wrenches[f"{side}_foot"]
+            on_foot, on_hand = (
+                np.concatenate([turn @ foot[:3], turn @ foot[3:]]),
+                posture.wrenches[f"{side}_hand"],
+            )
             for frame, wrench in ((hand, on_hand), (sole, on_foot)):
                 point, body = np.array(frames[frame].translation), model.body(frame).id
                 mujoco.mj_applyFT(model, data, wrench[:3], wrench[3:], point, body, outside)

@@ -72,12 +72,12 @@ def checker(scene: Scene) -> Checker:
 
 
 def share(solution: CaseSolution) -> float:
-    wrenches = solution.postures[ROBOT].hand_wrenches
-    return -float(sum(wrenches[side][2] for side in SIDES)) / (MASS * GRAVITY)
+    wrenches = solution.postures[ROBOT].wrenches
+    return -float(sum(wrenches[f"{side}_hand"][2] for side in SIDES)) / (MASS * GRAVITY)
 
 
 def moments(solution: CaseSolution) -> float:
-    wrenches = [posture.hand_wrenches[side] for posture in solution.postures.values() for side in SIDES]
+    wrenches = [posture.wrenches[f"{side}_hand"] for posture in solution.postures.values() for side in SIDES]
     return float(np.abs([wrench[3:] for wrench in wrenches]).max())
 
 
@@ -108,7 +108,7 @@ def test_rigid_grasps_without_moments_and_with_an_equal_share_are_point_grasps(
     for agent in (ROBOT, HUMAN):
         expected = pytest.approx(list(optimum[agent].torques.values()), abs=close)
         assert list(forced[agent].torques.values()) == expected
-        wrenches = forced[agent].hand_wrenches.values()
+        wrenches = [forced[agent].wrenches[f"{side}_hand"] for side in SIDES]
         assert -sum(wrench[2] for wrench in wrenches) == pytest.approx(MASS * GRAVITY / 2.0)
         assert max(np.abs(wrench[3:]).max() for wrench in wrenches) <= moment + 1e-7
 
@@ -153,7 +153,7 @@ def test_the_check_sees_shares_and_moments_that_were_not_asked_for(problem: Desi
     postures = solve(problem, rigid(problem, share=0.7)).postures
     other = violations(checker(rigid(problem, moment=3.0, share=0.4)), postures, 1.0)
     assert other["load.share"] == pytest.approx(0.3 * MASS * GRAVITY, rel=1e-6)
-    wrenches = [p.hand_wrenches[side][3:] for p in postures.values() for side in SIDES]
+    wrenches = [p.wrenches[f"{side}_hand"][3:] for p in postures.values() for side in SIDES]
     assert other["load.hand_moment"] == pytest.approx(np.abs(wrenches).max() - 3.0)
 
 
@@ -162,7 +162,7 @@ def test_no_agent_lifts_the_other_by_the_load(problem: DesignProblem) -> None:
     found = solve(problem, rigid(problem), 0.6, EffortWeights(2e-4, 2.0))
     assert share(found) == pytest.approx(1.0, abs=1e-6)
     lifted = {
-        name: replace(p, hand_wrenches={s: 1.5 * w for s, w in p.hand_wrenches.items()})
+        name: replace(p, wrenches={n: (1.5 if "hand" in n else 1.0) * w for n, w in p.wrenches.items()})
         for name, p in found.postures.items()
     }
     residuals = violations(checker(rigid(problem)), lifted, 0.6)
@@ -247,10 +247,11 @@ def test_shares_and_moments_bind_under_disturbances_too(problem: DesignProblem) 
     found = solve(problem, scene)
     for name, down in (("heavier", 1.2 * MASS * GRAVITY), ("pushed", MASS * GRAVITY + 10.0)):
         agents = found.disturbed[name]
-        carried = {a: -sum(w[2] for w in agents[a].hand_wrenches.values()) for a in (ROBOT, HUMAN)}
+        carried = {a: -sum(agents[a].wrenches[f"{side}_hand"][2] for side in SIDES) for a in (ROBOT, HUMAN)}
         assert carried[ROBOT] == pytest.approx(0.4 * down, abs=1e-5)
         assert carried[HUMAN] == pytest.approx(0.6 * down, abs=1e-5)
         assert (
-            max(np.abs(w[3:]).max() for p in agents.values() for w in p.hand_wrenches.values()) < 7.0 + 1e-6
+            max(np.abs(p.wrenches[f"{side}_hand"][3:]).max() for p in agents.values() for side in SIDES)
+            < 7.0 + 1e-6
         )
         assert found.residuals[f"{name}: load.share"] <= TOLERANCE

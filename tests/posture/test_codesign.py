@@ -187,7 +187,7 @@ def test_pressure_goes_to_the_middle_of_the_soles(paper: DesignProblem) -> None:
         joint = JointProblem(paper.scene, paper.space, (ONE,), chosen, fixed=paper.start[1])
         solution = joint.solve(paper.start[1], drawn=False)
         assert solution.solved
-        feet = [w for p in solution.cases[0].postures.values() for w in p.foot_wrenches.values()]
+        feet = [w for p in solution.cases[0].postures.values() for n, w in p.wrenches.items() if "foot" in n]
         return float(sum(np.square(center_of_pressure(wrench)).sum() for wrench in feet))
 
     assert distance(1e4) < 0.1 * distance(0.0)

@@ -145,7 +145,7 @@ def kept_apart(problem: DesignProblem) -> DesignProblem:
         id(agent): replace(
             agent,
             collisions=CollisionRules(
-                MARGIN, checked_pairs(agent.tree, agent.joints, agent.hands, agent.soles)
+                MARGIN, checked_pairs(agent.tree, agent.joints, agent.hand_frames, agent.foot_frames)
             ),
         )
         for scene in problem.scenes

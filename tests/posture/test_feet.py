@@ -30,7 +30,7 @@ def test_a_foot_that_points_backwards_is_turned_by_half_a_circle(problem: Design
     for _ in range(20):
         values = program.unpacked(program.packed({}) + rng.uniform(-2.0, 2.0, program.symbols.numel()))
         posture = form.expand({name.partition(".")[2]: value for name, value in values.items()})
-        rotation, _ = robot.at(posture).pose(agent.soles[form.sides[0]])
+        rotation, _ = robot.at(posture).pose(form.feet[0].frame)
         wanted = float(np.arctan2(rotation[1, 0], rotation[0, 0]))
         found.append(wanted)
         own = float(turn(program.packed(values), program.packed_parameters(given)))

@@ -50,7 +50,7 @@ def test_the_feet_carry_robot_person_and_load(unscaled: DesignResult, problem: D
     trees = (unscaled.tree, problem.scene.human.tree)
     mass = sum(link.inertia.mass for tree in trees for link in tree.links) + problem.scene.payload.mass
     for height in unscaled.cases:
-        carried = sum(p.foot_wrenches[side][2] for p in height.postures.values() for side in SIDES)
+        carried = sum(p.wrenches[f"{side}_foot"][2] for p in height.postures.values() for side in SIDES)
         assert carried == pytest.approx(mass * GRAVITY, abs=1e-4)
 
 
@@ -58,7 +58,9 @@ def test_each_agent_carries_half_of_a_centred_load(unscaled: DesignResult, probl
     half = problem.scene.payload.mass * GRAVITY / 2.0
     for height in unscaled.cases:
         for posture in height.postures.values():
-            assert -sum(posture.hand_wrenches[side][2] for side in SIDES) == pytest.approx(half, abs=1e-5)
+            assert -sum(posture.wrenches[f"{side}_hand"][2] for side in SIDES) == pytest.approx(
+                half, abs=1e-5
+            )
 
 
 def shifted(posture: AgentPosture, part: str) -> AgentPosture:
@@ -68,9 +70,9 @@ def shifted(posture: AgentPosture, part: str) -> AgentPosture:
     changes = {
         "joints": {"joints": {**posture.joints, first: posture.joints[first] + 0.01}},
         "torques": {"torques": {**posture.torques, first: posture.torques[first] + 0.01}},
-        "hand": {"hand_wrenches": {**posture.hand_wrenches, "left": posture.hand_wrenches["left"] + push}},
+        "hand": {"wrenches": {**posture.wrenches, "left_hand": posture.wrenches["left_hand"] + push}},
         "foot": {
-            "foot_wrenches": {**posture.foot_wrenches, "left": posture.foot_wrenches["left"] * -1.0},
+            "wrenches": {**posture.wrenches, "left_foot": posture.wrenches["left_foot"] * -1.0},
         },
         "base": {"base_position": posture.base_position + 0.001},
         "limits": {"joints": {**posture.joints, first: 4.0}},
@@ -129,14 +131,16 @@ def mirrored(posture: AgentPosture) -> AgentPosture:
     """The mirror image in the plane y = 0."""
     polar, axial = np.array([1.0, -1.0, 1.0]), np.array([-1.0, 1.0, -1.0])
     wrench = np.concatenate([polar, axial])
-    other = {"left": "right", "right": "left"}
     return AgentPosture(
         base_position=posture.base_position * polar,
         base_angles=posture.base_angles * axial,
         joints={partner(name): sign(name) * value for name, value in posture.joints.items()},
         torques={partner(name): sign(name) * value for name, value in posture.torques.items()},
-        hand_wrenches={side: posture.hand_wrenches[other[side]] * wrench for side in SIDES},
-        foot_wrenches={side: posture.foot_wrenches[other[side]] * wrench for side in SIDES},
+        wrenches={
+            f"{side}_{part}": posture.wrenches[f"{other}_{part}"] * wrench
+            for part in ("hand", "foot")
+            for side, other in (SIDES, SIDES[::-1])
+        },
     )
 
 

@@ -105,8 +105,8 @@ def test_disturbances_of_size_zero_are_none(
             torques = [postures[agent].torques[joint] for joint in posture.torques]
             assert torques == pytest.approx(list(posture.torques.values()), abs=1e-3)
             for side in SIDES:
-                assert postures[agent].foot_wrenches[side] == pytest.approx(
-                    posture.foot_wrenches[side], abs=1e-2
+                assert postures[agent].wrenches[f"{side}_foot"] == pytest.approx(
+                    posture.wrenches[f"{side}_foot"], abs=1e-2
                 )
 
 
@@ -125,26 +125,27 @@ def test_hands_and_feet_carry_weight_and_push(borne: CaseSolution, problem: Desi
     for case in EVERY:
         postures, on_load = borne.disturbed[case.name], case.push_on(PushedAt.LOAD)
         forward = {
-            agent.name: -agent.turn[0][0] * sum(postures[agent.name].hand_wrenches[side][0] for side in SIDES)
+            agent.name: -agent.turn[0][0]
+            * sum(postures[agent.name].wrenches[f"{side}_hand"][0] for side in SIDES)
             for agent in scene.agents
         }
-        held = -sum(postures[agent].hand_wrenches[side][2] for agent in forward for side in SIDES)
+        held = -sum(postures[agent].wrenches[f"{side}_hand"][2] for agent in forward for side in SIDES)
         load = scene.payload.mass * (1.0 + case.mass_share) * GRAVITY
         assert held == pytest.approx(load - on_load[2], abs=1e-4)
         assert sum(forward.values()) == pytest.approx(-on_load[0], abs=1e-4)
         assert abs(forward[ROBOT] - forward[HUMAN]) / 2.0 <= scene.stance.push + 1e-4
         for agent in scene.agents:
             posture, push = postures[agent.name], case.push_on(PushedAt(agent.name))
-            up = sum(float(w[2]) for w in posture.foot_wrenches.values())
-            down = sum(float(w[2]) for w in posture.hand_wrenches.values()) + push[2]
+            up = sum(float(posture.wrenches[f"{side}_foot"][2]) for side in SIDES)
+            down = sum(float(posture.wrenches[f"{side}_hand"][2]) for side in SIDES) + push[2]
             mass = sum(link.inertia.mass for link in agent.tree.links)
             assert up == pytest.approx(mass * GRAVITY - down, abs=1e-3)
 
 
 def test_an_offset_load_leans_on_whom_it_is_nearer_to(borne: CaseSolution, problem: DesignProblem) -> None:
     """Lever rule of a beam half a metre long, but for the moment of the push between the agents."""
-    hands = borne.disturbed[LEANING.name][HUMAN].hand_wrenches
-    carried = -sum(float(hands[side][2]) for side in SIDES)
+    hands = borne.disturbed[LEANING.name][HUMAN].wrenches
+    carried = -sum(float(hands[f"{side}_hand"][2]) for side in SIDES)
     expected = problem.scene.payload.mass * GRAVITY * (0.25 + 0.05) / 0.5
     lever = problem.scene.payload.size[2]  # both grasps lie this much above the middle, twice
     assert carried == pytest.approx(expected, abs=problem.scene.stance.push * lever / 0.5 + 1e-4)
@@ -192,8 +193,8 @@ def changed(posture: AgentPosture, part: str) -> AgentPosture:
     changes = {
         "joints": {"joints": {**posture.joints, first: posture.joints[first] + 0.01}},
         "torques": {"torques": {**posture.torques, first: posture.torques[first] + 0.01}},
-        "hand": {"hand_wrenches": {**posture.hand_wrenches, "left": posture.hand_wrenches["left"] + push}},
-        "foot": {"foot_wrenches": {**posture.foot_wrenches, "left": posture.foot_wrenches["left"] * -1.0}},
+        "hand": {"wrenches": {**posture.wrenches, "left_hand": posture.wrenches["left_hand"] + push}},
+        "foot": {"wrenches": {**posture.wrenches, "left_foot": posture.wrenches["left_foot"] * -1.0}},
     }
     return replace(posture, **changes[part])
 
@@ -253,7 +254,7 @@ def test_free_postures_resist_a_sideways_push(problem: DesignProblem, undisturbe
     hands = solution.disturbed["gust"]
     scene = problem.scene
     sideways = sum(
-        -agent.turn[1][1] * float(hands[agent.name].hand_wrenches[side][1])
+        -agent.turn[1][1] * float(hands[agent.name].wrenches[f"{side}_hand"][1])
         for agent in scene.agents
         for side in SIDES
     )

@@ -151,9 +151,9 @@ def flat_posture(form: Form, rng: np.random.Generator) -> AgentPosture:
     joints["jLeftAnkle_rotz"] = 0.02
     joints["jRightAnkle_rotz"] = -0.02
     none = dict.fromkeys(form.agent.joints, 0.0)
-    wrench = dict.fromkeys(("left", "right"), np.zeros(6))
+    wrenches = {contact.name: np.zeros(6) for contact in form.agent.contacts}
     base, angles = np.array([-0.5, 0.0, 0.9]), np.array([0.0, rng.uniform(-0.2, 0.4), 0.0])
-    return AgentPosture(base, angles, joints, none, wrench, wrench)
+    return AgentPosture(base, angles, joints, none, wrenches)
 
 
 @pytest.mark.parametrize("height", [0.1, 0.45, 0.9, 1.58, 2.2])
@@ -168,7 +168,7 @@ def test_the_cost_is_what_numpy_makes_of_pinocchios_frames(
         count = len(form.coordinates)
         parts = {"base_position": ca.DM.zeros(3), "base_angles": ca.DM.zeros(3), "joints": ca.DM.zeros(count)}
         motions = {HUMAN: PostureMotion(parts, parts)}
-    parties = (Embodied(form, form.agent.tree), free_hands_beside(form))
+    parties = (Embodied(form, form.agent.tree), *free_hands_beside(form, scene))
     made = assemble(parties, TERMS.values(), CaseSymbols(symbolic, (height,), motions))
     cost = MEASURED_POSTURE.posture_cost(made.undisturbed.bodies[HUMAN])
     symbols = ca.vertcat(*[variable.symbol for variable in made.variables])
@@ -181,7 +181,7 @@ def test_the_cost_is_what_numpy_makes_of_pinocchios_frames(
     ]
     model = AgentModel.of(form.agent, form.agent.tree)
     state = model.at(posture)
-    eta = (height + scene.payload.grasp_point(form.agent, "left")[2]) / STATURE
+    eta = (height + scene.payload.grasp_point(form.agent, form.hands[0])[2]) / STATURE
     drawn = np.array(drawn_person(sample))
     expected = np.mean([expected_cost(seen(state, side), task, eta, drawn) for side in ("left", "right")])
     for name in OTHERS:

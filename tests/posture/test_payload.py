@@ -31,7 +31,7 @@ def solve(problem: DesignProblem, payload: Payload, height: float = 1.0) -> Case
 
 def carried(solution: CaseSolution, agent: str) -> float:
     """Part of the load's weight that an agent carries [N]."""
-    return -float(sum(solution.postures[agent].hand_wrenches[side][2] for side in SIDES))
+    return -float(sum(solution.postures[agent].wrenches[f"{side}_hand"][2] for side in SIDES))
 
 
 @pytest.mark.parametrize("offset", [-0.1, 0.05])
@@ -52,7 +52,9 @@ def test_rigid_grasps_share_the_load_freely(problem: DesignProblem) -> None:
     assert max(rigid.residuals.values()) < 1e-5
     assert carried(point, ROBOT) == pytest.approx(2.5 * GRAVITY, abs=1e-4)
     assert carried(rigid, ROBOT) + carried(rigid, HUMAN) == pytest.approx(5.0 * GRAVITY, abs=1e-4)
-    moments = [rigid.postures[agent].hand_wrenches[side][3:] for agent in (ROBOT, HUMAN) for side in SIDES]
+    moments = [
+        rigid.postures[agent].wrenches[f"{side}_hand"][3:] for agent in (ROBOT, HUMAN) for side in SIDES
+    ]
     assert np.abs(moments).max() > 0.01
     costs = [min(a.cost for a in s.attempts if a.status is Status.SOLVED) for s in (point, rigid)]
     assert costs[1] < costs[0] + 1e-6, "more freedom cannot cost more"
@@ -60,15 +62,15 @@ def test_rigid_grasps_share_the_load_freely(problem: DesignProblem) -> None:
 
 def test_own_grasp_points_are_met(problem: DesignProblem) -> None:
     points = {
-        (ROBOT, "left"): (-0.25, 0.15, 0.025),
-        (ROBOT, "right"): (-0.25, -0.15, 0.025),
-        (HUMAN, "left"): (0.25, -0.22, 0.0),
-        (HUMAN, "right"): (0.25, 0.22, 0.0),
+        (ROBOT, "left_hand"): (-0.25, 0.15, 0.025),
+        (ROBOT, "right_hand"): (-0.25, -0.15, 0.025),
+        (HUMAN, "left_hand"): (0.25, -0.22, 0.0),
+        (HUMAN, "right_hand"): (0.25, 0.22, 0.0),
     }
     payload = Payload(BOX, 5.0, grasp_points=points)
     scene = problem.scene
-    assert payload.grasp_point(scene.robot, "left") == (-0.25, 0.15, 0.025)
-    assert payload.grasp_point(scene.human, "left") == (-0.25, 0.22, 0.0)
+    assert payload.grasp_point(scene.robot, scene.robot.hands[0]) == (-0.25, 0.15, 0.025)
+    assert payload.grasp_point(scene.human, scene.human.hands[0]) == (-0.25, 0.22, 0.0)
     solution = solve(problem, payload)
     assert solution.status is Status.SOLVED
     assert solution.residuals["robot.hands_on_load"] < 1e-6

@@ -69,8 +69,8 @@ def test_right_side_mirrors_the_left(problem: DesignProblem) -> None:
             assert robot.joints["r_" + name[2:]] == position
             assert robot.torques["r_" + name[2:]] == robot.torques[name]
     assert robot.joints["torso_yaw"] == robot.joints["torso_roll"] == 0.0
-    mirrored = robot.foot_wrenches["left"] * [1.0, -1.0, 1.0, -1.0, 1.0, -1.0]
-    assert np.allclose(robot.foot_wrenches["right"], mirrored)
+    mirrored = robot.wrenches["left_foot"] * [1.0, -1.0, 1.0, -1.0, 1.0, -1.0]
+    assert np.allclose(robot.wrenches["right_foot"], mirrored)
 
 
 def test_symmetric_reach_is_the_whole_reach(problem: DesignProblem) -> None:

@@ -13,7 +13,7 @@ from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree
 from evodesign.human.strength import joint_strengths
 from evodesign.mechanics.contact import SoleSize
-from evodesign.mechanics.scene import HUMAN, SIDES, Agent, Payload, Role, Scene
+from evodesign.mechanics.scene import HUMAN, SIDES, Agent, Payload, Role, Scene, two_hands_two_feet
 from evodesign.posture.results import AgentPosture
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import JointKind
@@ -30,9 +30,7 @@ def person(of: Person = MAN) -> Agent:
         Role.PERSON,
         human_tree(of),
         DEFAULT_JOINTS,
-        HANDS,
-        SOLES,
-        size,
+        two_hands_two_feet(HANDS, SOLES, size),
         TRUNK,
         strengths=joint_strengths(of),
     )
@@ -73,18 +71,16 @@ def standing(name: str, hands: Mapping[str, tuple[float, ...]] = DOWN) -> AgentP
     """A person with a load, and the foot wrenches and torques that cost least."""
     angles, bent = POSTURES[name]
     joints = {joint: bent.get(joint, 0.0) for joint in DEFAULT_JOINTS}
-    nothing = {side: np.zeros(6) for side in SIDES}
-    held = {side: np.array(hands[side]) for side in SIDES}
-    bare = AgentPosture(np.array([-0.4, 0.0, 0.9]), np.array(angles), joints, {}, held, nothing)
+    held = {f"{side}_hand": np.array(hands[side]) for side in SIDES}
+    bare = AgentPosture(np.array([-0.4, 0.0, 0.9]), np.array(angles), joints, {}, held)
     torques, feet = least_torques(bare, weight=True)
-    wrenches = {side: feet[6 * place : 6 * place + 6] for place, side in enumerate(SIDES)}
+    held |= {f"{side}_foot": feet[6 * place : 6 * place + 6] for place, side in enumerate(SIDES)}
     return AgentPosture(
         bare.base_position,
         bare.base_angles,
         joints,
         dict(zip(DEFAULT_JOINTS, torques, strict=True)),
         held,
-        wrenches,
     )
 
 
@@ -140,8 +136,7 @@ def least_torques(posture: AgentPosture, *, weight: bool) -> tuple[np.ndarray, n
     """
     at = places(posture)
     given = [
-        (PERSON.hands[side], at[PERSON.hands[side]][1], wrench[:3], wrench[3:])
-        for side, wrench in posture.hand_wrenches.items()
+        (hand.frame, at[hand.frame][1], *np.split(posture.wrenches[hand.name], 2)) for hand in PERSON.hands
     ]
     if weight:
         for link, (mass, center) in masses().items():
@@ -150,10 +145,10 @@ def least_torques(posture: AgentPosture, *, weight: bool) -> tuple[np.ndarray, n
     constant = asked(posture, given)
     columns = []
     for side in SIDES:
-        turn, origin = at[PERSON.soles[side]]
+        turn, origin = at[PERSON.frame(f"{side}_foot")]
         units = [(turn @ axis, np.zeros(3)) for axis in np.eye(3)]
         units += [(moment, force) for force, moment in units]
-        columns += [asked(posture, [(PERSON.soles[side], origin, *unit)]) for unit in units]
+        columns += [asked(posture, [(PERSON.frame(f"{side}_foot"), origin, *unit)]) for unit in units]
     by_feet = np.array(columns).T
     some = np.linalg.lstsq(by_feet[:6], -constant[:6], rcond=None)[0]
     free = np.linalg.svd(by_feet[:6])[2][6:].T

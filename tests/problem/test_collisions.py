@@ -179,7 +179,7 @@ def test_everyone_keeps_clear_of_the_same(problem: DesignProblem) -> None:
     several = problem.source.text.replace(person, 'population = { sex = "both", percentiles = [5, 95] }')
     built = build_problem(ProblemSource("p.toml", f"{several}\n[collisions]\n", problem.source.files))
     alone = [
-        set(checked_pairs(each.human.tree, each.human.joints, each.human.hands, each.human.soles))
+        set(checked_pairs(each.human.tree, each.human.joints, each.human.hand_frames, each.human.foot_frames))
         for each in built.scenes
     ]
     assert len(alone) == 4

@@ -71,8 +71,9 @@ def test_knees_of_the_icub_are_bent_by_the_angle_asked_for(problem: DesignProble
 def test_knees_of_other_robots_are_found_by_geometry(problem: DesignProblem, name: str, feet: str) -> None:
     text = HUMANOIDS[name].read_text()
     tree = read_urdf(text, name, InertiaRule.FILE)
-    soles = {side: feet.format(side) for side in ("left", "right")}
-    agent = replace(problem.scene.robot, tree=tree, joints=tree.actuated, soles=soles)
+    robot = problem.scene.robot
+    soles = tuple(replace(foot, frame=feet.format(foot.side)) for foot in robot.feet)
+    agent = replace(robot, tree=tree, joints=tree.actuated, contacts=(*soles, *robot.hands))
     ranges = bent_ranges(agent, soles, math.radians(20.0), "robot.knee_flexion_deg", problem.source)
     hip, knee, ankle = LEGS[name]
     assert sorted(ranges) == sorted([knee, knee.replace("left", "right")])

@@ -169,7 +169,7 @@ def test_the_result_shows_torques_and_wrenches_of_every_case(
     assert list(told["disturbed"]) == ["heavier", "disturbance_2"]
     shown = told["disturbed"]["disturbance_2"]
     assert shown["human"]["torque_norm"] == height.disturbed["disturbance_2"][HUMAN].torque_norm
-    wrench = height.disturbed["disturbance_2"][ROBOT].foot_wrenches["left"]
+    wrench = height.disturbed["disturbance_2"][ROBOT].wrenches["left_foot"]
     assert shown["wrenches"]["robot.left_foot"] == wrench.tolist()
     assert "heavier: load.force_balance" in told["residuals"]
 

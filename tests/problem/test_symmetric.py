@@ -121,7 +121,7 @@ def test_torque_limits_of_an_averaged_robot_are_the_weaker_side_s(problem: Desig
 
 
 def test_a_hand_off_its_mirrored_place_is_named(problem: DesignProblem) -> None:
-    joint = problem.scene.robot.tree.parent_joint[problem.scene.robot.hands["right"]].name
+    joint = problem.scene.robot.tree.parent_joint[problem.scene.robot.frame("right_hand")].name
     tree = moved(problem.scene.robot.tree, joint, (0.0, 0.004, 0.0))
     (note,) = strange(build_problem(source_with(problem, tree)))
     assert "robot.hands: wanted mirror images of each other, found 'l_hand_frame' and 'r_hand_frame'" in note

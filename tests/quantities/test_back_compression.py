@@ -32,7 +32,7 @@ FLEXION = "jL5S1_roty"
 
 def load_of(posture: AgentPosture):
     joints = np.array([posture.joints[name] for name in PERSON.joints])
-    feet = np.concatenate([posture.foot_wrenches[side] for side in SIDES])
+    feet = np.concatenate([posture.wrenches[f"{side}_foot"] for side in SIDES])
     return lumbar_load(PERSON, posture.base_angles, joints, feet, posture.torques[FLEXION])
 
 
@@ -48,9 +48,10 @@ def test_it_is_the_moment_over_the_lever_and_what_is_above_along_the_spine(name:
             weight = np.array([0.0, 0.0, -mass * G])
             force += weight
             moment += np.cross(at[link][1] + at[link][0] @ center - disc, weight)
-    for side, wrench in posture.hand_wrenches.items():
+    for side in SIDES:
+        wrench = posture.wrenches[f"{side}_hand"]
         force += wrench[:3]
-        moment += wrench[3:] + np.cross(at[PERSON.hands[side]][1] - disc, wrench[:3])
+        moment += wrench[3:] + np.cross(at[PERSON.frame(f"{side}_hand")][1] - disc, wrench[:3])
     bends, along, ahead = float(turn[:, 1] @ moment), float(turn[:, 2] @ force), float(turn[:, 0] @ force)
     load = load_of(posture)
     assert load.moment == pytest.approx(bends, abs=1e-6)
@@ -67,7 +68,7 @@ def test_pinocchio_finds_the_same_force(name: str) -> None:
     below = PERSON.tree.mass - sum(mass for link, (mass, _) in masses().items() if link in beyond(FLEXION))
     force = np.array([0.0, 0.0, -below * G])
     for side in SIDES:
-        force += state.pose(PERSON.soles[side])[0] @ posture.foot_wrenches[side][:3]
+        force += state.pose(PERSON.frame(f"{side}_foot"))[0] @ posture.wrenches[f"{side}_foot"][:3]
     own = state.pose("L5")[0].T @ force
     assert load_of(posture).force.tolist() == pytest.approx(own.tolist(), abs=1e-6)
 
@@ -89,7 +90,7 @@ def test_its_derivatives_are_those_of_differences(name: str) -> None:
             base_angles=generator.standard_normal(3),
             joints={joint: generator.standard_normal() for joint in posture.joints},
             torques={joint: 10.0 * generator.standard_normal() for joint in posture.torques},
-            foot_wrenches={side: 50.0 * generator.standard_normal(6) for side in SIDES},
+            wrenches={f"{side}_foot": 50.0 * generator.standard_normal(6) for side in SIDES},
         )
         slope = by_posture.along(step) + by_torque[FLEXION] * step.torques[FLEXION]
         ends = [back_compression(SCENE, {HUMAN: moved(posture, step, size)}) for size in (1e-5, -1e-5)]
@@ -102,8 +103,8 @@ def moved(posture: AgentPosture, step: AgentPosture, size: float) -> AgentPostur
         base_angles=posture.base_angles + size * step.base_angles,
         joints={name: at + size * step.joints[name] for name, at in posture.joints.items()},
         torques={name: at + size * step.torques[name] for name, at in posture.torques.items()},
-        foot_wrenches={
-            side: at + size * step.foot_wrenches[side] for side, at in posture.foot_wrenches.items()
+        wrenches={
+            name: at + size * step.wrenches.get(name, np.zeros(6)) for name, at in posture.wrenches.items()
         },
     )
 

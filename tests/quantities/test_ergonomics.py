@@ -16,7 +16,7 @@ from evodesign.human.endurance import endurance
 from evodesign.human.niosh import Coupling
 from evodesign.human.strength import joint_strengths
 from evodesign.mechanics.contact import SoleSize
-from evodesign.mechanics.scene import HUMAN, Agent, Role
+from evodesign.mechanics.scene import HUMAN, Agent, Role, two_hands_two_feet
 from evodesign.posture.check import AgentModel
 from evodesign.posture.results import AgentPosture
 from evodesign.quantities.ergonomics import ergonomics, ergonomics_json
@@ -30,9 +30,8 @@ MAN = Person(1.82, 72.7, Sex.MALE)
 def human() -> Agent:
     tree = human_tree(MAN)
     size = SoleSize(*sole_size(MAN))
-    return Agent(
-        HUMAN, Role.PERSON, tree, DEFAULT_JOINTS, HANDS, SOLES, size, TRUNK, strengths=joint_strengths(MAN)
-    )
+    contacts = two_hands_two_feet(HANDS, SOLES, size)
+    return Agent(HUMAN, Role.PERSON, tree, DEFAULT_JOINTS, contacts, TRUNK, strengths=joint_strengths(MAN))
 
 
 PERSON = human()
@@ -50,18 +49,19 @@ def posture(
         base_rpy_rad=angles,
         joints_rad={name: joints.get(name, 0.0) for name in DEFAULT_JOINTS},
         torques_n_m=dict.fromkeys(DEFAULT_JOINTS, 1.0),
-        hand_wrenches={
-            "left": (3.0, 1.0, forces[0], *wrench[:3]),
-            "right": (3.0, -1.0, forces[1], *wrench[:3]),
+        wrenches={
+            "left_hand": (3.0, 1.0, forces[0], *wrench[:3]),
+            "right_hand": (3.0, -1.0, forces[1], *wrench[:3]),
+            "left_foot": tuple(wrench),
+            "right_foot": tuple(wrench),
         },
-        foot_wrenches={"left": tuple(wrench), "right": tuple(wrench)},
     )
 
 
 def middles(detail: AgentDetail) -> tuple[np.ndarray, np.ndarray]:
     """Middle of the hands and of the ankles by pinocchio [m]."""
     solved = AgentPosture(
-        np.array(detail.base_position_m), np.array(detail.base_rpy_rad), detail.joints_rad, {}, {}, {}
+        np.array(detail.base_position_m), np.array(detail.base_rpy_rad), detail.joints_rad, {}, {}
     )
     state = AgentModel.of(PERSON, PERSON.tree).at(solved)
     hands = np.mean([state.pose(name)[1] for name in HANDS.values()], axis=0)
@@ -139,8 +139,7 @@ def test_the_back_the_load_and_the_scores_are_those_of_the_quantities() -> None:
         np.array(detail.base_rpy_rad),
         detail.joints_rad,
         detail.torques_n_m,
-        {side: np.array(wrench) for side, wrench in detail.hand_wrenches.items()},
-        {side: np.array(wrench) for side, wrench in detail.foot_wrenches.items()},
+        {name: np.array(wrench) for name, wrench in detail.wrenches.items()},
     )
     scene = SCENE.with_agents(PERSON)
     assert found.load_torque == pytest.approx(human_load_torque(scene, {HUMAN: solved}))

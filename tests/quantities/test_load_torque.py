@@ -36,8 +36,8 @@ def by_pinocchio(posture: AgentPosture, *, loaded: bool) -> np.ndarray:
     state = AgentModel.of(PERSON, PERSON.tree).at(posture)
     rows = np.array(state.bias)
     for side in SIDES if loaded else ():
-        rows -= state.jacobian_in_world(PERSON.hands[side]).T @ posture.hand_wrenches[side]
-    feet = np.hstack([state.jacobian_in_frame(PERSON.soles[side]).T for side in SIDES])
+        rows -= state.jacobian_in_world(PERSON.frame(f"{side}_hand")).T @ posture.wrenches[f"{side}_hand"]
+    feet = np.hstack([state.jacobian_in_frame(PERSON.frame(f"{side}_foot")).T for side in SIDES])
     some = np.linalg.pinv(feet[:6]) @ rows[:6]
     free = null_space(feet[:6])
     torques = rows[6:] - feet[6:] @ some
@@ -69,8 +69,7 @@ def test_its_derivatives_are_those_of_differences(name: str) -> None:
             generator.standard_normal(3),
             {joint: generator.standard_normal() for joint in posture.joints},
             {},
-            {side: 10.0 * generator.standard_normal(6) for side in SIDES},
-            posture.foot_wrenches,
+            {f"{side}_hand": 10.0 * generator.standard_normal(6) for side in SIDES},
         )
         ends = [human_load_torque(SCENE, {HUMAN: moved(posture, step, size)}) for size in (1e-5, -1e-5)]
         assert (ends[0] - ends[1]) / 2e-5 == pytest.approx(slopes.along(step), rel=1e-7)
@@ -81,8 +80,8 @@ def moved(posture: AgentPosture, step: AgentPosture, size: float) -> AgentPostur
         posture,
         base_angles=posture.base_angles + size * step.base_angles,
         joints={name: at + size * step.joints[name] for name, at in posture.joints.items()},
-        hand_wrenches={
-            side: at + size * step.hand_wrenches[side] for side, at in posture.hand_wrenches.items()
+        wrenches={
+            name: at + size * step.wrenches.get(name, np.zeros(6)) for name, at in posture.wrenches.items()
         },
     )
 
@@ -97,7 +96,7 @@ def test_solved_torques_less_it_are_those_of_the_person_with_empty_hands(
     for solution in result.cases:
         posture = solution.postures[HUMAN]
         state = model.at(posture)
-        feet = np.hstack([state.jacobian_in_frame(person.soles[side]).T for side in SIDES])
+        feet = np.hstack([state.jacobian_in_frame(person.frame(f"{side}_foot")).T for side in SIDES])
         some, free = np.linalg.pinv(feet[:6]) @ state.bias[:6], null_space(feet[:6])
         empty, by_free = state.bias[6:] - feet[6:] @ some, feet[6:] @ free
         empty = empty - by_free @ (np.linalg.pinv(by_free) @ empty)

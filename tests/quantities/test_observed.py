@@ -21,9 +21,8 @@ def detail(joints: dict[str, float], angles: tuple[float, float, float], left: f
         base_rpy_rad=tuple(math.radians(each) for each in angles),
         joints_rad={name: given.get(name, 0.0) for name in {*PERSON.joints, *given}},
         torques_n_m={},
-        hand_wrenches={},
-        foot_wrenches={
-            side: (0.0, 0.0, 700.0 * share, 0.0, 0.0, 0.0)
+        wrenches={
+            f"{side}_foot": (0.0, 0.0, 700.0 * share, 0.0, 0.0, 0.0)
             for side, share in (("left", left), ("right", 1.0 - left))
         },
     )

@@ -25,7 +25,7 @@ from evodesign.human.coupled_joints import rhythms
 from evodesign.human.measured_posture import MARK, measured_posture
 from evodesign.mechanics.contact import SoleSize
 from evodesign.mechanics.floating_base import ROOT, BodyState, Configuration, FloatingBody
-from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Payload, Role, Scene
+from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Payload, Role, Scene, two_hands_two_feet
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.check import AgentModel
@@ -71,9 +71,7 @@ def predicted(row: Mapping[str, str]) -> Compared:
         role=Role.PERSON,
         tree=human_tree(man),
         joints=DEFAULT_JOINTS,
-        hands=HANDS,
-        soles=SOLES,
-        sole_size=SoleSize(*sole_size(man)),
+        contacts=two_hands_two_feet(HANDS, SOLES, SoleSize(*sole_size(man))),
         trunk=TRUNK,
         rhythms=rhythms(),
         measured=given,

@@ -322,10 +322,10 @@ def test_a_users_urdf_is_the_person_of_a_problem(users_problem: DesignProblem) -
     assert math.fsum(link.inertia.mass for link in human.tree.links) == pytest.approx(72.7, abs=5e-4)
     at = placements(human.tree, {})
     for side in SIDES:
-        sole, ankle = at[human.soles[side]].translation, at[f"{side.title()}Foot"].translation
+        sole, ankle = at[human.frame(f"{side}_foot")].translation, at[f"{side.title()}Foot"].translation
         assert ankle[2] - sole[2] == pytest.approx(0.077914, abs=1e-12)
         assert sole[0] - ankle[0] == pytest.approx(0.0927, abs=1e-4)
-        assert abs(at[human.hands[side]].translation[1]) == pytest.approx(0.8847, abs=1e-4)
+        assert abs(at[human.frame(f"{side}_hand")].translation[1]) == pytest.approx(0.8847, abs=1e-4)
 
 
 def test_its_turned_limits_of_hip_flexion_and_toes_are_noted_and_no_others(
@@ -349,7 +349,7 @@ def test_its_posture_is_found_within_the_limits_as_they_are_written(users_proble
     posture = height.postures[HUMAN]
     for name, angle in posture.joints.items():
         assert tree.joint_by_name[name].lower - 1e-6 <= angle <= tree.joint_by_name[name].upper + 1e-6, name
-    carried = sum(posture.foot_wrenches[side][2] for side in SIDES)
+    carried = sum(posture.wrenches[f"{side}_foot"][2] for side in SIDES)
     assert carried == pytest.approx((72.7001 + 2.5) * GRAVITY, abs=1e-4)
 
 

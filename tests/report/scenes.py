@@ -8,7 +8,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from evodesign.mechanics.scene import SIDES, Agent, Scene
+from evodesign.mechanics.scene import Agent, Scene
 from evodesign.problem.build import DesignProblem
 from evodesign.records import AgentDetail, CaseDetail, CaseOutcome, Detail, Hold, InstantDetail
 from evodesign.report.scene_models import PlacedScene, SceneModels, SceneSet, placed_scene
@@ -53,8 +53,10 @@ def random_posture(agent: Agent, rng: np.random.Generator) -> AgentDetail:
         base_rpy_rad=numbers(0.5, 3),
         joints_rad=dict(zip(agent.joints, numbers(0.8, len(agent.joints)), strict=True)),
         torques_n_m=dict(zip(agent.joints, numbers(10.0, len(agent.joints)), strict=True)),
-        hand_wrenches={side: numbers(10.0, 6) for side in SIDES},
-        foot_wrenches={side: (*numbers(10.0, 2), 300.0, *numbers(10.0, 3)) for side in SIDES},
+        wrenches={
+            **{hand.name: numbers(10.0, 6) for hand in agent.hands},
+            **{foot.name: (*numbers(10.0, 2), 300.0, *numbers(10.0, 3)) for foot in agent.feet},
+        },
     )
 
 

@@ -69,27 +69,29 @@ def test_moved_wrenches_have_the_logged_force_and_moment(problem: DesignProblem)
         posture = height.agents[agent.name]
         for side in SIDES:
             foot = wrench_of(stage, agent.name, f"{side}_foot")
-            sole = stage.frames[agent.name][agent.soles[side]]
+            sole = stage.frames[agent.name][agent.frame(f"{side}_foot")]
             rotation = np.array(sole.rotation)
             lever = np.array(foot.point) - np.array(sole.translation)
             moment = np.array(foot.moment) + np.cross(lever, foot.force)
-            logged = np.array(posture.foot_wrenches[side])
+            logged = np.array(posture.wrenches[f"{side}_foot"])
             assert np.allclose(rotation.T @ foot.force, logged[:3])
             assert np.allclose(rotation.T @ moment, logged[3:])
             assert np.allclose((rotation.T @ foot.moment)[:2], 0.0)
             assert (rotation.T @ lever)[2] == pytest.approx(0.0, abs=1e-12)
             hand = wrench_of(stage, agent.name, f"{side}_hand")
-            assert hand.point == stage.frames[agent.name][agent.hands[side]].translation
+            assert hand.point == stage.frames[agent.name][agent.frame(f"{side}_hand")].translation
             sign = np.diag(agent.turn)
-            assert np.allclose([*(sign * hand.force), *(sign * hand.moment)], posture.hand_wrenches[side])
+            assert np.allclose(
+                [*(sign * hand.force), *(sign * hand.moment)], posture.wrenches[f"{side}_hand"]
+            )
 
 
 def test_foot_without_load_keeps_its_wrench_at_the_sole(problem: DesignProblem) -> None:
     models = random_cast(problem, 3)
     height = random_detail(problem, 3).cases[0]
-    height.agents[ROBOT].foot_wrenches["left"] = (0.0,) * 6
+    height.agents[ROBOT].wrenches["left_foot"] = (0.0,) * 6
     stage = placed_scene(models, height)
-    sole = stage.frames[ROBOT][problem.scene.robot.soles["left"]]
+    sole = stage.frames[ROBOT][problem.scene.robot.frame("left_foot")]
     assert wrench_of(stage, ROBOT, "left_foot").point == sole.translation
 
 

@@ -99,14 +99,14 @@ def toy_assessment(genome: Genome, header: RunHeader) -> Assessment:
 
 def toy_cases(genome: Genome) -> tuple[CaseDetail, ...]:
     """A posture of one joint that follows from the genome."""
-    wrenches = dict.fromkeys(("left", "right"), (0.0, 0.0, 12.5, 0.0, 0.0, 0.0))
+    names = ("left_hand", "right_hand", "left_foot", "right_foot")
+    wrenches = dict.fromkeys(names, (0.0, 0.0, 12.5, 0.0, 0.0, 0.0))
     agent = AgentDetail(
         base_position_m=(-0.4, 0.0, genome[0]),
         base_rpy_rad=(0.0, genome[1], 0.0),
         joints_rad={"elbow": genome[0]},
         torques_n_m={"elbow": 30.0 * genome[1]},
-        hand_wrenches=wrenches,
-        foot_wrenches=wrenches,
+        wrenches=wrenches,
     )
     instant = InstantDetail(time_s=0.0, agents={"robot": agent, "human": agent})
     return (CaseDetail(case=Case(task=Hold(height_m=1.0)), instants=(instant,)),)

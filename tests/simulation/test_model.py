@@ -63,13 +63,13 @@ def test_inverse_dynamics_asks_for_the_planned_torques_and_leaves_the_load_in_ba
         posture = held.solution.postures[name]
         sign = np.diag(parts.agent.turn)
         for side in SIDES:
-            hand, sole = parts.hands[side], parts.soles[side]
-            force, moment = (sign * part for part in np.split(posture.hand_wrenches[side], 2))
+            hand, sole = parts.hands[f"{side}_hand"], parts.soles[f"{side}_foot"]
+            force, moment = (sign * part for part in np.split(posture.wrenches[f"{side}_hand"], 2))
             point = data.site_xpos[hand]
             mujoco.mj_applyFT(model, data, force, moment, point, model.site_bodyid[hand], passed)
             mujoco.mj_applyFT(model, data, -force, -moment, point, found.load, passed)
             turn = data.geom_xmat[sole].reshape(3, 3)
-            force, moment = (turn @ part for part in np.split(posture.foot_wrenches[side], 2))
+            force, moment = (turn @ part for part in np.split(posture.wrenches[f"{side}_foot"], 2))
             origin, body = found.sole_origin(sole), model.geom_bodyid[sole]
             mujoco.mj_applyFT(model, data, force, moment, origin, body, passed)
     left = data.qfrc_inverse - passed
@@ -85,9 +85,9 @@ def test_soles_are_on_the_floor_and_hands_on_the_load_and_nothing_else_touches(h
     model, data = found.model, found.data
     for name, parts in found.agents.items():
         for side in SIDES:
-            assert found.sole_origin(parts.soles[side])[2] == pytest.approx(0.0, abs=1e-6)
+            assert found.sole_origin(parts.soles[f"{side}_foot"])[2] == pytest.approx(0.0, abs=1e-6)
             grip = data.site(f"{name}/{side}_hand_grip").xpos
-            assert data.site_xpos[parts.hands[side]] == pytest.approx(grip, abs=1e-6)
+            assert data.site_xpos[parts.hands[f"{side}_hand"]] == pytest.approx(grip, abs=1e-6)
     soles = {sole for parts in found.agents.values() for sole in parts.soles.values()}
     assert {int(geom) for contact in data.contact for geom in contact.geom} == {0, *soles}
     touching = {
@@ -138,8 +138,8 @@ def test_a_joints_inertia_is_that_of_the_bodies_that_it_moves(
         turned = data.ximat[body].reshape(3, 3).T @ axis
         inertia += model.body_mass[body] * across @ across + turned @ (model.body_inertia[body] * turned)
     for side in SIDES:
-        if (model.site_bodyid[parts.hands[side]] in beyond) == (moved == "beyond"):
-            across = np.cross(axis, data.site_xpos[parts.hands[side]] - anchor)
+        if (model.site_bodyid[parts.hands[f"{side}_hand"]] in beyond) == (moved == "beyond"):
+            across = np.cross(axis, data.site_xpos[parts.hands[f"{side}_hand"]] - anchor)
             inertia += held.scene.payload.mass / 4.0 * across @ across
     shared = inertia / (1.0 if moved == "beyond" else 2.0)
     told = joint_inertias(found, parts)[parts.agent.joints.index(joint)]

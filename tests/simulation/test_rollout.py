@@ -44,8 +44,8 @@ def test_a_hold_stands_with_the_torques_and_wrenches_of_its_plan(
         posture = held.solution.postures[name]
         for row, side in enumerate(SIDES):
             foot, hand = rollout.agents[name].feet[-1, row], rollout.agents[name].hands[-1, row]
-            assert foot == pytest.approx(posture.foot_wrenches[side], abs=0.5)
-            assert hand == pytest.approx(posture.hand_wrenches[side], abs=0.1)
+            assert foot == pytest.approx(posture.wrenches[f"{side}_foot"], abs=0.5)
+            assert hand == pytest.approx(posture.wrenches[f"{side}_hand"], abs=0.1)
 
 
 def test_half_the_step_gives_the_same_motion(held: Held) -> None:

@@ -189,7 +189,7 @@ def test_mjcf_keeps_limits_and_efforts(problem: DesignProblem) -> None:
 def test_robot_stands_on_the_ground_and_does_not_touch_itself(problem: DesignProblem) -> None:
     robot = problem.scene.robot
     frames = link_frames(robot.tree, Placement(), {})
-    lowest = min(frames[sole].translation[2] for sole in robot.soles.values())
+    lowest = min(frames[sole].translation[2] for sole in robot.foot_frames)
     standing = KeyPosture(Placement(translation=(0.0, 0.0, -lowest - 0.01)), {})
     model = mujoco.MjModel.from_xml_string(mjcf_text(robot.tree, GRAVITY, {"standing": standing}))
     data = mujoco.MjData(model)

@@ -44,15 +44,10 @@ def largest_torques(postures: Sequence[AgentDetail]) -> dict[str, Sequence[float
 
 
 def contact_forces(postures: Sequence[AgentDetail]) -> dict[str, Sequence[float | None]]:
-    """Size of the force on each hand and foot, posture by posture."""
-    parts = {
-        "hand": [posture.hand_wrenches for posture in postures],
-        "foot": [posture.foot_wrenches for posture in postures],
-    }
+    """Size of the force at each contact, posture by posture."""
     return {
-        f"{side} {part}": [math.hypot(*wrench[side][:3]) for wrench in wrenches]
-        for part, wrenches in parts.items()
-        for side in wrenches[0]
+        name.replace("_", " "): [math.hypot(*posture.wrenches[name][:3]) for posture in postures]
+        for name in postures[0].wrenches
     }
 
 

@@ -29,7 +29,7 @@ import numpy as np
 
 from evodesign.design.parameter import ParameterKind
 from evodesign.design.space import DesignSpace
-from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Scene
+from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import Array, Expression, Program, Start, Variable
 from evodesign.nlp.solver import RawSolution, Solver
@@ -285,6 +285,7 @@ def _height_costs(load_case: LoadCase, settings: JointSettings) -> list[Expressi
             tasks.torque * weights[name] * effort(body) / TORQUE_UNIT**2 + load_case.posture_costs[position]
         )
         if tasks.center_of_pressure:
-            cost += tasks.center_of_pressure * len(SIDES) / len(body.feet) * pressure_task(body.feet)
+            shown = len(body.agent.feet) / len(body.feet)
+            cost += tasks.center_of_pressure * shown * pressure_task(body.feet)
         costs.append(cost + load_case.costs[position])
     return [*costs, load_case.posture_costs[-1] + load_case.costs[-1]]

@@ -19,7 +19,7 @@ from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import Array, ConstraintBlock, Program
 from evodesign.nlp.solver import RawSolution, Solver, SolverCache
-from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
+from evodesign.posture.assemble import CaseSymbols, Embodied, Party, assemble, free_hands_beside, total
 from evodesign.posture.check import TOLERANCE, AgentModel, near_bodies
 from evodesign.posture.formulations.base import program_key
 from evodesign.posture.parting import parted
@@ -97,7 +97,7 @@ def person_program(form: Form, scene: Scene, weight: float, *, switched: bool = 
     scene, mass = any_load(scene)
     scene, person = any_person(scene)
     height, internal = ca.SX.sym("height"), ca.SX.sym("internal_force")
-    parties = (Embodied(form, form.agent.tree), free_hands_beside(form))
+    parties: list[Party] = [Embodied(form, form.agent.tree), *free_hands_beside(form, scene)]
     assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height,)), switched=switched)
     load_case = assembly.undisturbed
     given = (force_along_x(scene.robot, load_case.hands[ROBOT]) - internal) / PUSH_UNIT

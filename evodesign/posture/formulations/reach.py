@@ -30,7 +30,7 @@ from evodesign.nlp.program import ConstraintBlock, Program, Start, Variable
 from evodesign.nlp.sensitivity import SolutionSensitivity
 from evodesign.nlp.solver import RawSolution, Solver, SolverCache
 from evodesign.posture.allocation import shared_scene
-from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, free_hands_beside, total
+from evodesign.posture.assemble import CaseSymbols, Embodied, Party, assemble, free_hands_beside, total
 from evodesign.posture.formulations.base import Setting, program_key
 from evodesign.posture.parting import parted
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, PersonReach, Precomputed
@@ -340,7 +340,7 @@ def reach_program(
     sense, least = ca.SX.sym("sense"), ca.SX.sym(LEAST)
     floor = scene.payload.size[2] / 2.0
     height = Variable.column(HEIGHT, [floor], [5.0], [1.0], 1.0)
-    parties = (Embodied(form, tree), free_hands_beside(form))
+    parties: list[Party] = [Embodied(form, tree), *free_hands_beside(form, scene)]
     assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height.value,)), switched=switched)
     load_case = assembly.undisturbed
     disliked = total([*load_case.regularisation, load_case.free_moments])

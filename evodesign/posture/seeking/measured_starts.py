@@ -41,7 +41,7 @@ def measured_starts(program: Program, form: Form, scene: Scene, heights: Sequenc
     given, starts = form.agent.measured, list[Start]()
     if given is None:
         return starts
-    grasp = scene.payload.grasp_point(form.agent, "left")
+    grasp = scene.payload.grasp_point(form.agent, form.hands[0])
     bounds = {v.name: (v.lower, v.upper) for v in program.variables}
     for elsewhere in (None, *ELSEWHERE):
         start: dict[str, np.ndarray] = {}
@@ -85,8 +85,9 @@ def posture_of_features(form: Form, stature: float, mean: Mapping[str, float], h
         at[raised.name] = -left * math.pi / 2.0 * raised.axis[0]
     positions = {name: at.get(name, 0.0) for name in form.agent.joints}
     base = _base(form, positions, pitch, hand - mean["ahead"] * stature)
-    none, wrench = dict.fromkeys(form.agent.joints, 0.0), dict.fromkeys(SIDES, np.zeros(6))
-    return AgentPosture(base, np.array([0.0, pitch, 0.0]), positions, none, wrench, wrench)
+    none = dict.fromkeys(form.agent.joints, 0.0)
+    wrenches = {contact.name: np.zeros(6) for contact in form.agent.contacts}
+    return AgentPosture(base, np.array([0.0, pitch, 0.0]), positions, none, wrenches)
 
 
 def _shares(form: Form) -> Mapping[str, float]:
@@ -111,5 +112,5 @@ def _base(form: Form, positions: Mapping[str, float], pitch: float, ankle: float
     c, s = math.cos(pitch), math.sin(pitch)
     tilted = Placement(((c, 0.0, s), (0.0, 1.0, 0.0), (-s, 0.0, c)))
     frames = link_frames(form.agent.tree, tilted, positions)
-    foot, sole = frames["LeftFoot"].translation, frames[form.agent.soles["left"]].translation
+    foot, sole = frames["LeftFoot"].translation, frames[form.agent.frame("left_foot")].translation
     return np.array([ankle - foot[0], 0.0, -sole[2]])

@@ -24,10 +24,10 @@ from evodesign.collision.scene_bodies import SceneBodies
 from evodesign.mechanics.balance import AppliedWrench
 from evodesign.mechanics.disturbance import Disturbance
 from evodesign.mechanics.floating_base import BodyState
-from evodesign.mechanics.scene import Agent, Payload, Scene
+from evodesign.mechanics.scene import Agent, Contact, Payload, Scene
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.results import AgentPosture
-from evodesign.posture.symmetry import WRENCH, Form
+from evodesign.posture.symmetry import WRENCH, Form, both_sides
 from evodesign.tree.kinematics import Pose
 from evodesign.tree.model import Tree
 
@@ -231,13 +231,13 @@ class Body:
 
     @cached_property
     def hands(self) -> Mapping[str, Expression]:
-        """Force [N] and moment about the grasp point [N m] on both hands; the load feels their negative."""
-        return both_hands({side: self.values[f"{side}_hand"] for side in self.form.sides})
+        """Force [N] and moment about the grasp point [N m] on all hands; the load feels their negative."""
+        return all_hands(self.agent.hands, {hand.name: self.values[hand.name] for hand in self.form.hands})
 
     @cached_property
     def feet(self) -> Mapping[str, Expression]:
         """Force [N] and moment [N m] on each of the form's feet, in the sole frame."""
-        return {side: self.values[f"{side}_foot"] for side in self.form.sides}
+        return {foot.name: self.values[foot.name] for foot in self.form.feet}
 
 
 def hand_wrench(free: Expression) -> Expression:
@@ -245,12 +245,9 @@ def hand_wrench(free: Expression) -> Expression:
     return ca.vertcat(free, ca.DM.zeros(6 - free.numel()))
 
 
-def both_hands(free: Mapping[str, Expression]) -> Mapping[str, Expression]:
-    """Wrenches on both hands, by side, from the free numbers of both, or of the left one that is mirrored."""
-    hands = {side: hand_wrench(numbers) for side, numbers in free.items()}
-    if "right" not in hands:
-        hands["right"] = hands["left"] * ca.DM(WRENCH)
-    return hands
+def all_hands(hands: Iterable[Contact], free: Mapping[str, Expression]) -> Mapping[str, Expression]:
+    """Wrenches on all of an agent's hands, by name, from the free numbers of those that mirror no other."""
+    return both_sides(hands, {name: hand_wrench(numbers) for name, numbers in free.items()}, ca.DM(WRENCH))
 
 
 @dataclass(frozen=True, slots=True)
@@ -260,8 +257,8 @@ class Coupled:
     Args:
         scene: agents, load, ground and stance, undisturbed.
         bodies: agents that have one, by name.
-        hands: force [N] and moment [N m] on both hands of both agents, by agent and side, in
-            the agents' frames.
+        hands: force [N] and moment [N m] on all hands, by the names of agent and contact, in the agents'
+            frames.
         symmetric: whether right hands mirror left ones.
         disturbance: of the load case.
         load_acceleration: of the load, upwards [m/s^2].

@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 
 from evodesign.mechanics.contact import SoleSize
-from evodesign.mechanics.scene import SIDES
+from evodesign.mechanics.scene import TO_THE_LEFT, Contact
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.terms.base import Body, BodyTerm, Bound, MeasuredBody, Residual, Row
 from evodesign.tree.kinematics import Expression
@@ -26,21 +26,20 @@ def rows(body: Body) -> Iterator[Row]:
     gap = body.scene.stance.feet_gap
     if gap is None:
         return
-    inner = {side: _inner_corners(body, side) for side in body.form.sides}
-    if len(inner) == len(SIDES):
-        apart = [left - right for left, right in product(inner["left"], inner["right"])]
+    inner = [_inner_corners(body, foot) for foot in body.form.feet]
+    if body.form.mirror is None:
+        apart = [left - right for left, right in product(*inner)]
     else:
-        apart = [2.0 * left for left in inner["left"]]
+        apart = [2.0 * left for left in inner[0]]
     group, least = LimitGroup.STANCE, Bound("gap between the feet", gap, "m", False, key="limits.feet_gap_m")
     column = ca.vertcat(*apart)
     yield Row(NAME, column, gap, np.inf, (NAME,), group=group, posture_only=True, least=(least,))
 
 
-def _inner_corners(body: Body, side: str) -> list[Expression]:
+def _inner_corners(body: Body, foot: Contact) -> list[Expression]:
     """How far to the left the corners are."""
-    agent = body.form.agent
-    sole, inwards = body.poses[agent.soles[side]], -1.0 if side == "left" else 1.0
-    return [sole.point(ca.DM([x, y, 0.0]))[1] for x, y in _corners(agent.sole_size) if y * inwards > 0.0]
+    sole, inwards = body.poses[foot.frame], -TO_THE_LEFT[foot.side]
+    return [sole.point(ca.DM([x, y, 0.0]))[1] for x, y in _corners(foot.sole) if y * inwards > 0.0]
 
 
 def _corners(size: SoleSize) -> list[tuple[float, float]]:
@@ -52,15 +51,15 @@ def residuals(body: MeasuredBody) -> Iterator[Residual]:
     gap = body.scene.stance.feet_gap
     if gap is None:
         return
-    (left, half_left), (right, half_right) = (_sideways(body, side) for side in SIDES)
+    (left, half_left), (right, half_right) = (_sideways(body, foot) for foot in body.agent.feet)
     missing = max(0.0, gap - (left - half_left - right - half_right))
     yield Residual(NAME, missing, "m", "the gap between the feet", LimitGroup.STANCE, posture_only=True)
 
 
-def _sideways(body: MeasuredBody, side: str) -> tuple[float, float]:
+def _sideways(body: MeasuredBody, foot: Contact) -> tuple[float, float]:
     """Where the middle of a sole is, and how far its corners reach from there [m], along y."""
-    size = body.agent.sole_size
-    rotation, origin = body.state.pose(body.agent.soles[side])
+    size = foot.sole
+    rotation, origin = body.state.pose(foot.frame)
     reach = abs(rotation[1, 0]) * size.length / 2.0 + abs(rotation[1, 1]) * size.width / 2.0
     return float(origin[1]), float(reach)
 

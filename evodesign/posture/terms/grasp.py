@@ -13,7 +13,7 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 
-from evodesign.mechanics.scene import SIDES, Grasp, Payload, Scene
+from evodesign.mechanics.scene import Contact, Grasp, Payload, Scene
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import (
@@ -39,10 +39,10 @@ GRASP_ROWS = {Grasp.POINT: 3, Grasp.RIGID: 6}
 
 def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
     """The free numbers of the form's hands [N, N m]."""
-    return hand_unknowns(form.sides, scene.payload)
+    return hand_unknowns(form.hands, scene.payload)
 
 
-def hand_unknowns(sides: Sequence[str], payload: Payload) -> Iterator[Unknown]:
+def hand_unknowns(hands: Sequence[Contact], payload: Payload) -> Iterator[Unknown]:
     """The free numbers of hands [N, N m]: a force, and with rigid grasps a moment."""
     moment = min(STRONGEST, payload.hand_moment)
     limit = ([STRONGEST] * 3 + [moment] * 3)[: GRASP_ROWS[payload.grasp]]
@@ -50,9 +50,9 @@ def hand_unknowns(sides: Sequence[str], payload: Payload) -> Iterator[Unknown]:
     turning = Bound("hand moment", moment, "N m", True, key="payload.hand_moment_n_m")
     bounds = [both_ways(each) for each in (force, force, force, turning, turning, turning)[: len(limit)]]
     below, above = zip(*bounds, strict=True)
-    for side in sides:
+    for hand in hands:
         least, rest = [-x for x in limit], [0.0] * len(limit)
-        asked = Unknown(f"{side}_hand", least, limit, rest, HAND_UNIT, LimitGroup.CONTACT)
+        asked = Unknown(hand.name, least, limit, rest, HAND_UNIT, LimitGroup.CONTACT)
         yield replace(asked, least=below, most=above)
 
 
@@ -66,18 +66,18 @@ def moment_cost(hands: Mapping[str, Expression], payload: Payload) -> Expression
 def rows(body: Body) -> Iterator[Row]:
     """Hands on their grasp points (Eq. 14 c and d)."""
     lift = ca.vertcat(0.0, 0.0, body.load_height)
-    for side in body.form.sides:
-        hand = body.poses[body.agent.hands[side]].position
-        distance = hand - vector(body.scene.payload.grasp_point(body.agent, side)) - lift
-        yield Row(f"{side}_hand_on_load", distance, 0.0, 0.0, ("hands_on_load",), posture_only=True)
+    for hand in body.form.hands:
+        place = body.poses[hand.frame].position
+        distance = place - vector(body.scene.payload.grasp_point(body.agent, hand)) - lift
+        yield Row(f"{hand.name}_on_load", distance, 0.0, 0.0, ("hands_on_load",), posture_only=True)
 
 
 def residuals(body: MeasuredBody) -> Iterator[Residual]:
     """Largest distance of a hand from its grasp point along an axis."""
     found, lift = [], np.array([0.0, 0.0, body.load_height])
-    for side in SIDES:
-        grasp = np.array(body.scene.payload.grasp_point(body.agent, side)) + lift
-        found.append(float(np.abs(body.state.pose(body.agent.hands[side])[1] - grasp).max()))
+    for hand in body.agent.hands:
+        grasp = np.array(body.scene.payload.grasp_point(body.agent, hand)) + lift
+        found.append(float(np.abs(body.state.pose(hand.frame)[1] - grasp).max()))
     words = "the hands' place on the load"
     yield Residual("hands_on_load", max(found), "m", words, posture_only=True)
 

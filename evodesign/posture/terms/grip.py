@@ -16,41 +16,42 @@ import numpy as np
 
 from evodesign.body.placement import Vector
 from evodesign.mechanics.elbow import Elbow, elbow
-from evodesign.mechanics.scene import SIDES, Agent, Payload
+from evodesign.mechanics.scene import Agent, Contact, Payload
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.terms.base import Body, BodyTerm, Bound, MeasuredBody, Residual, Row
 from evodesign.tree.kinematics import vector
 
 
-def directed(agent: Agent, payload: Payload, sides: Iterable[str]) -> Iterator[tuple[str, Vector, Elbow]]:
-    """Sides whose forearms are not free, with the axis of their cone and the elbow."""
-    for side in sides:
-        axis = payload.grasp_direction.axis(side)
-        bent = elbow(agent, side) if axis else None
+def directed(
+    agent: Agent, payload: Payload, hands: Iterable[Contact]
+) -> Iterator[tuple[Contact, Vector, Elbow]]:
+    """Hands whose forearms are not free, with the axis of their cone and the elbow."""
+    for hand in hands:
+        axis = payload.grasp_direction.axis(hand.side)
+        bent = elbow(agent, hand) if axis else None
         if axis and bent:
-            yield side, axis, bent
+            yield hand, axis, bent
 
 
 def rows(body: Body) -> Iterator[Row]:
     """The cosine of each forearm's angle from the direction, above that of the cone."""
     payload, group = body.scene.payload, LimitGroup.STANCE
-    for side, axis, bent in directed(body.agent, payload, body.form.sides):
-        forearm = body.poses[body.agent.hands[side]].position - body.poses[bent.link].point(
-            vector(bent.place)
-        )
+    for hand, axis, bent in directed(body.agent, payload, body.form.hands):
+        forearm = body.poses[hand.frame].position - body.poses[bent.link].point(vector(bent.place))
         within = ca.dot(vector(axis), forearm) / ca.norm_2(forearm) - math.cos(payload.grasp_cone)
         found, cone, key = ("grasp_direction",), payload.grasp_cone, "payload.grasp_cone_deg"
         most = (Bound("grasp cone", cone, "rad", True, -math.sin(cone), key),)
-        yield Row(f"{side}_forearm", within, 0.0, np.inf, found, group=group, posture_only=True, least=most)
+        name = f"{hand.side}_forearm"
+        yield Row(name, within, 0.0, np.inf, found, group=group, posture_only=True, least=most)
 
 
 def residuals(body: MeasuredBody) -> Iterator[Residual]:
     """The largest angle by which a forearm leaves its cone."""
     payload, state = body.scene.payload, body.state
     beyond = []
-    for side, axis, bent in directed(body.agent, payload, SIDES):
+    for hand, axis, bent in directed(body.agent, payload, body.agent.hands):
         rotation, origin = state.pose(bent.link)
-        forearm = state.pose(body.agent.hands[side])[1] - origin - rotation @ np.array(bent.place)
+        forearm = state.pose(hand.frame)[1] - origin - rotation @ np.array(bent.place)
         across = float(np.linalg.norm(np.cross(axis, forearm)))
         beyond.append(math.atan2(across, float(np.dot(axis, forearm))) - payload.grasp_cone)
     if beyond:

@@ -28,7 +28,7 @@ import pinocchio as pin
 
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, PushedAt
-from evodesign.mechanics.scene import SIDES, Agent, Grasp, Scene
+from evodesign.mechanics.scene import Agent, Grasp, Scene
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.terms.base import (
     UNDISTURBED,
@@ -67,7 +67,7 @@ def force_along_x(agent: Agent, hands: Mapping[str, Expression]) -> Expression:
 
     Args:
         agent: robot or person.
-        hands: wrenches on its hands, in its frame, by side.
+        hands: wrenches on its hands, in its frame, by name.
     """
     return sum(-turned_to_world(agent, wrench[:3])[0] for wrench in hands.values())
 
@@ -125,10 +125,10 @@ def _unbalanced(coupled: Coupled, scene: Scene, force: Expression, weight: Expre
     """
     moment: Expression = ca.cross(vector(scene.payload.center_of_mass), weight)
     for agent in scene.agents:
-        for side in SIDES:
-            wrench = coupled.hands[agent.name][side]
+        for hand in agent.hands:
+            wrench = coupled.hands[agent.name][hand.name]
             on_load = -turned_to_world(agent, wrench[:3])
-            point = turned_to_world(agent, vector(scene.payload.grasp_point(agent, side)))
+            point = turned_to_world(agent, vector(scene.payload.grasp_point(agent, hand)))
             force = force + on_load
             moment = moment + ca.cross(point, on_load) - turned_to_world(agent, wrench[3:])
     both = ca.vertcat(force, moment)
@@ -145,10 +145,10 @@ def residuals(system: MeasuredSystem) -> Iterator[Residual]:
     along_x = {agent.name: 0.0 for agent in scene.agents}
     for agent in scene.agents:
         world_from_agent = agent.turn
-        for side in SIDES:
-            wrench = system.bodies[agent.name].posture.hand_wrenches[side]
+        for hand in agent.hands:
+            wrench = system.bodies[agent.name].posture.wrenches[hand.name]
             on_load = -world_from_agent @ wrench[:3]
-            point = world_from_agent @ np.array(payload.grasp_point(agent, side))
+            point = world_from_agent @ np.array(payload.grasp_point(agent, hand))
             force = force + on_load
             moment = moment + pin.skew(point) @ on_load - world_from_agent @ wrench[3:]
             along_x[agent.name] += float(on_load[0])

@@ -25,7 +25,7 @@ import numpy as np
 
 from evodesign.body.placement import Placement
 from evodesign.human.measured_posture import FEATURES, MARK, MEAN_PERSON, SIDES, SPINE, Gaussians
-from evodesign.mechanics.scene import HUMAN, Scene
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.terms.base import Body, BodyTerm, Expression
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
@@ -79,7 +79,7 @@ def features(body: Body, side: str, stature: float) -> dict[str, Expression]:
     low, up = chords(agent.tree, stature)
     left = 1.0 if side == "left" else -1.0
     elbow, shoulder = (body.poses[f"{name}{link}"].position for link in ("ForeArm", "UpperArm"))
-    arm, palm = elbow - shoulder, body.poses[agent.hands[side]].position
+    arm, palm = elbow - shoulder, body.poses[agent.frame(f"{side}_hand")].position
     knee, ankle, bend = f"j{name}Knee_roty", f"j{name}Ankle_roty", f"j{name}Elbow_rotz"
     return {
         "trunk_low": pitch + sum(low[joint] * bent[joint] for joint in SPINE),
@@ -129,14 +129,14 @@ def _hats(knots: tuple[float, ...], eta: Expression) -> Expression:
 
 def posture_cost(body: Body) -> Expression | None:
     """Squared standard deviations from the mean of people who were measured; of a robot nothing is said."""
-    given, form = body.scene.human.measured, body.form
-    if given is None or body.agent.name != HUMAN:
+    given, form = body.scene.agent(body.agent.name).measured, body.form
+    if given is None:
         return None
     own, cost = given.lift if body.moving else given.hold, 0.0
-    for side in form.sides:
-        palm = body.load_height + body.scene.payload.grasp_point(body.agent, side)[2]
-        found = features(body, side, given.stature)
-        cost += deviation(found, own, palm / given.stature, given.drawn) / len(form.sides)
+    for hand in form.hands:
+        palm = body.load_height + body.scene.payload.grasp_point(body.agent, hand)[2]
+        found = features(body, hand.side, given.stature)
+        cost += deviation(found, own, palm / given.stature, given.drawn) / len(form.hands)
     for place, (name, count) in enumerate(zip(form.joints, form.counts, strict=True)):
         bare = name.replace("jLeft", "j").replace("jRight", "j")
         if bare in given.joints:

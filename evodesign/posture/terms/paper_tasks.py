@@ -98,4 +98,4 @@ def pressure_task(feet: Mapping[str, Expression]) -> Expression:
 
 def mass_height_task(robot: Agent, tree: Tree) -> Expression:
     """t4: the less, the higher the centre of mass of the standing robot."""
-    return 1.0 / standing_height_of_mass(tree, tuple(robot.soles.values())) ** 2
+    return 1.0 / standing_height_of_mass(tree, robot.foot_frames) ** 2

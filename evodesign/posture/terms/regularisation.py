@@ -21,7 +21,7 @@ def wrench_cost(body: Body) -> Expression:
     """Sideways and twisting hands and unequal feet, slightly disliked."""
     hands, feet = body.hands.values(), body.feet
     lateral = sum(ca.sumsqr(wrench[:2]) + ca.sumsqr(wrench[3:]) for wrench in hands) / HAND_UNIT**2
-    unequal = ca.sumsqr(feet["left"] - feet["right"]) / FORCE_UNIT**2 if body.form.mirror is None else 0.0
+    unequal = ca.sumsqr(ca.minus(*feet.values())) / FORCE_UNIT**2 if body.form.mirror is None else 0.0
     return REGULARISATION * (lateral + unequal)
 
 

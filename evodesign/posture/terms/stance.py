@@ -12,7 +12,6 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 
-from evodesign.mechanics.scene import SIDES
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.terms.base import Body, BodyTerm, Bound, MeasuredBody, Residual, Row, both_ways
 
@@ -20,7 +19,7 @@ from evodesign.posture.terms.base import Body, BodyTerm, Bound, MeasuredBody, Re
 def rows(body: Body) -> Iterator[Row]:
     """Trunk frames behind the load's edge, and the soles' distances."""
     form, stance = body.form, body.scene.stance_of(body.agent)
-    soles = [body.poses[form.agent.soles[side]].position for side in form.sides]
+    soles = [body.poses[foot.frame].position for foot in form.feet]
     if form.trunk:
         trunk = ca.vertcat(*[body.poses[frame].position[0] for frame in form.trunk])
         key, clear = "limits.trunk_clearance_m", stance.trunk_clearance
@@ -29,7 +28,7 @@ def rows(body: Body) -> Iterator[Row]:
         yield replace(row, labels=form.trunk)
     (least, most), name, key = stance.feet_apart, "feet apart", "limits.feet_apart_m"
     ends = Bound(name, least, "m", False, key=key), Bound(name, most, "m", True, key=key)
-    if form.sides != SIDES:  # the right sole is the left one's mirror image
+    if form.mirror is not None:  # the right sole is the left one's mirror image
         yield _row("feet_apart", 2.0 * soles[0][1], least, most, ends[:1], ends[1:])
         return
     yield _row("feet_apart", soles[0][1] - soles[1][1], least, most, ends[:1], ends[1:])
@@ -58,7 +57,7 @@ def _nearest(body: Body | MeasuredBody) -> float:
 def residuals(body: MeasuredBody) -> Iterator[Residual]:
     """Distances [m] by which feet and trunk are where they should not be."""
     state, stance = body.state, body.scene.stance_of(body.agent)
-    left, right = (state.pose(body.agent.soles[side])[1] for side in SIDES)
+    left, right = (state.pose(foot.frame)[1] for foot in body.agent.feet)
     ahead, apart, _ = (left - right).tolist()
     least, most = stance.feet_apart
     trunk = [float(state.pose(name)[1][0]) - _nearest(body) for name in body.agent.trunk]

@@ -17,13 +17,12 @@ from dataclasses import replace
 
 import casadi as ca
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 
 from evodesign.mechanics.balance import AppliedWrench, cut
 from evodesign.mechanics.disturbance import PushedAt
 from evodesign.mechanics.floating_base import ROOT, BodyState
-from evodesign.mechanics.scene import SIDES, Agent, Scene
+from evodesign.mechanics.scene import Agent, Scene
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import (
@@ -110,12 +109,12 @@ def _within_rated(body: Body) -> Iterator[Row]:
 
 def _contacts(body: Body) -> Iterator[AppliedWrench]:
     """What load and ground do to the agent, in its own frame."""
-    for side in body.form.sides:
-        hand, sole = body.poses[body.agent.hands[side]], body.poses[body.agent.soles[side]]
-        wrench = body.hands[side]
-        yield AppliedWrench(body.agent.hands[side], hand.position, wrench[:3], wrench[3:])
-        force, moment = sole.rotation @ body.feet[side][:3], sole.rotation @ body.feet[side][3:]
-        yield AppliedWrench(body.agent.soles[side], sole.position, force, moment)
+    for hand in body.form.hands:
+        wrench = body.hands[hand.name]
+        yield AppliedWrench(hand.frame, body.poses[hand.frame].position, wrench[:3], wrench[3:])
+    for foot in body.form.feet:
+        sole, wrench = body.poses[foot.frame], body.feet[foot.name]
+        yield AppliedWrench(foot.frame, sole.position, sole.rotation @ wrench[:3], sole.rotation @ wrench[3:])
 
 
 def _push(body: Body) -> Iterator[AppliedWrench]:
@@ -138,11 +137,12 @@ def asked(agent: Agent, posture: AgentPosture, state: BodyState, push: Sequence[
     """
     rows = np.array(state.bias)
     if any(push):
-        in_agent = pin.rpy.rpyToMatrix(0.0, 0.0, -agent.facing) @ np.array(push)
+        in_agent = agent.turn.T @ np.array(push)
         rows -= state.jacobian_in_world(agent.pushed_frame)[:3].T @ in_agent
-    for side in SIDES:
-        rows -= state.jacobian_in_world(agent.hands[side]).T @ posture.hand_wrenches[side]
-        rows -= state.jacobian_in_frame(agent.soles[side]).T @ posture.foot_wrenches[side]
+    for hand in agent.hands:
+        rows -= state.jacobian_in_world(hand.frame).T @ posture.wrenches[hand.name]
+    for foot in agent.feet:
+        rows -= state.jacobian_in_frame(foot.frame).T @ posture.wrenches[foot.name]
     return rows
 
 

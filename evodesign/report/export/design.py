@@ -14,7 +14,7 @@ from typing import Any
 
 import msgspec
 
-from evodesign.mechanics.scene import SIDES, Agent
+from evodesign.mechanics.scene import Agent
 from evodesign.records import (
     CaseDetail,
     CaseOutcome,
@@ -145,11 +145,11 @@ def _wrench_rows(models: SceneModels, detail: CaseDetail) -> Iterator[Row]:
 
 def _wrenches_of(agent: Agent, detail: CaseDetail) -> Iterator[Row]:
     height, posture = detail.height_m, detail.agents[agent.name]
-    for side in SIDES:
+    for hand in agent.hands:
         frame = f"{agent.name}'s own, x at the load"
-        yield height, agent.name, f"{side}_hand", frame, *posture.hand_wrenches[side]
-    for side in SIDES:
-        yield height, agent.name, f"{side}_foot", agent.soles[side], *posture.foot_wrenches[side]
+        yield height, agent.name, hand.name, frame, *posture.wrenches[hand.name]
+    for foot in agent.feet:
+        yield height, agent.name, foot.name, foot.frame, *posture.wrenches[foot.name]
 
 
 def _text(columns: Row, cases: Sequence[CaseDetail], rows_of: Iterable[Iterable[Row]]) -> str:

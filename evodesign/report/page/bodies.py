@@ -66,11 +66,12 @@ def changes(
 def agent_body(agent: Agent) -> TreeBody:
     """An agent's tree with what shows its links, and which links are its soles, of what size."""
     position, surfaces = _positions(agent.tree), _surfaces(agent.tree)
+    sole = agent.feet[0].sole
     return TreeBody(
         links=tuple(_link(link, surfaces) for link in agent.tree.links),
         joints=tuple(_joint(joint, position) for joint in agent.tree.joints),
-        soles={side: position[name] for side, name in agent.soles.items()},
-        sole_size_m=(float(agent.sole_size.length), float(agent.sole_size.width)),
+        soles={foot.name: position[foot.frame] for foot in agent.feet},
+        sole_size_m=(float(sole.length), float(sole.width)),
     )
 
 

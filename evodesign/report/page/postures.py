@@ -71,6 +71,6 @@ def _of_instant(instant: InstantDetail) -> int:
 
 
 def _of_agent(agent: AgentDetail) -> int:
-    wrenches = (*agent.hand_wrenches.values(), *agent.foot_wrenches.values())
+    wrenches = agent.wrenches.values()
     by_joint = (agent.joints_rad, agent.torques_n_m, agent.speeds_rad_s)
     return 6 + sum(len(wrench) for wrench in wrenches) + sum(len(joints) for joints in by_joint)

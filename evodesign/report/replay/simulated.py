@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError
 from evodesign.evaluation.simulations import SimulatedCase
-from evodesign.mechanics.scene import SIDES, Agent
+from evodesign.mechanics.scene import Agent
 from evodesign.records import AgentDetail, Case, CaseDetail, InstantDetail
 from evodesign.report.replay.recording import NANOSECONDS, Frame, write_frames
 from evodesign.report.scene_models import SceneSet, placed_scene
@@ -76,15 +76,18 @@ def _posture(agent: Agent, rollout: AgentRollout, frame: int, place: int) -> Age
     position, turn = agent_from_world.apply(rollout.roots[place, :3]), _turn(rollout.roots[place])
     yaw, pitch, roll = (agent_from_world * turn).as_euler("ZYX")
     joints, torques = rollout.positions[place].tolist(), rollout.torques[place].tolist()
-    sides = dict(zip(SIDES, rollout.hands[frame].tolist(), strict=True))
-    feet = dict(zip(SIDES, rollout.feet[frame].tolist(), strict=True))
+    both = ((agent.feet, rollout.feet), (agent.hands, rollout.hands))
+    wrenches = {
+        contact.name: wrench
+        for contacts, found in both
+        for contact, wrench in zip(contacts, found[frame].tolist(), strict=True)
+    }
     return AgentDetail(
         base_position_m=tuple(position.tolist()),
         base_rpy_rad=(float(roll), float(pitch), float(yaw)),
         joints_rad=dict(zip(agent.joints, joints, strict=True)),
         torques_n_m=dict(zip(agent.joints, torques, strict=True)),
-        hand_wrenches={side: tuple(wrench) for side, wrench in sides.items()},
-        foot_wrenches={side: tuple(wrench) for side, wrench in feet.items()},
+        wrenches={name: tuple(wrench) for name, wrench in wrenches.items()},
     )
 
 

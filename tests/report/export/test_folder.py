@@ -15,7 +15,7 @@ from mcap.reader import make_reader
 
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError
-from evodesign.mechanics.scene import ROBOT
+from evodesign.mechanics.scene import ROBOT, SIDES
 from evodesign.problem.build import DesignProblem
 from evodesign.records import (
     FORMAT_VERSION,
@@ -157,16 +157,15 @@ def test_tables_hold_the_logged_numbers(exported: tuple[ExportedDesign, Path]) -
             assert {row["name"]: float(row["position"]) for row in joints} == posture.joints_rad
             assert {row["name"]: float(row["torque"]) for row in joints} == posture.torques_n_m
             assert {row["position_unit"] for row in joints} == {"rad"}
-            for part, logged in (("hand", posture.hand_wrenches), ("foot", posture.foot_wrenches)):
-                for side, wrench in logged.items():
-                    (row,) = (
-                        row
-                        for row in wrenches
-                        if (float(row["height_m"]), row["agent"], row["contact"])
-                        == (height, agent, f"{side}_{part}")
-                    )
-                    numbers = [float(value) for key, value in row.items() if key.endswith(("_n", "_n_m"))]
-                    assert numbers == list(wrench)
+            assert {*posture.wrenches} == {f"{side}_{part}" for side in SIDES for part in ("hand", "foot")}
+            for name, wrench in posture.wrenches.items():
+                (row,) = (
+                    row
+                    for row in wrenches
+                    if (float(row["height_m"]), row["agent"], row["contact"]) == (height, agent, name)
+                )
+                numbers = [float(value) for key, value in row.items() if key.endswith(("_n", "_n_m"))]
+                assert numbers == list(wrench)
 
 
 def test_json_holds_the_logged_design(exported: tuple[ExportedDesign, Path]) -> None:

@@ -209,7 +209,7 @@ def test_moving_the_height_slider_moves_the_posture(page: Tab, real_run: RunLog)
     page.wait_for(f"{CANVAS}.toDataURL() !== {json.dumps(before)}")
     assert page.value("document.querySelector('.wrenches').textContent") != wrenches
     details = next(detail for detail in real_run.details if detail.evaluation == number)
-    force = details.cases[2].agents[ROBOT].foot_wrenches["left"][2]
+    force = details.cases[2].agents[ROBOT].wrenches["left_foot"][2]
     cell = "document.querySelector('[data-agent=robot] tr:nth-child(2)').children[3].textContent"
     assert page.value(cell) == f"{force:.1f}"
 
@@ -244,14 +244,16 @@ def test_links_stand_where_our_kinematics_puts_them(
 
 def test_slides_and_oblique_axes_move_as_in_our_kinematics(page: Tab, problem: DesignProblem) -> None:
     tree = crane()
-    agent = replace(problem.scene.robot, tree=tree, soles={"left": "hook", "right": "flag"})
+    robot = problem.scene.robot
+    frames = {"left_foot": "hook", "right_foot": "flag"}
+    contacts = tuple(replace(foot, frame=frames[foot.name]) for foot in robot.feet)
+    agent = replace(robot, tree=tree, contacts=contacts)
     posture = AgentDetail(
         base_position_m=(0.3, -0.2, 0.9),
         base_rpy_rad=(0.4, -0.7, 1.9),
         joints_rad={"swing": 0.8, "reach": 0.35, "twist": -2.9, "wave": 1.2},
         torques_n_m={},
-        hand_wrenches={},
-        foot_wrenches={},
+        wrenches={},
     )
     given = [msgspec.json.encode(part).decode() for part in (agent_body(agent), posture)]
     check_poses(page, f"window.evodesign.linkPoses('robot', {given[0]}, {given[1]})", tree, posture, 0.0)

@@ -128,7 +128,7 @@ def test_torques_power_and_forces_on_hands_are_those_of_the_log(
     assert power["joints that drive"][1] == over(lambda each: sum(max(one, 0.0) for one in powers(each)))
     for side in ("left", "right"):
         force = drawn(page, 2)[f"{side} hand"][1]
-        assert force == over(lambda each, side=side: math.hypot(*each.hand_wrenches[side][:3]))
+        assert force == over(lambda each, side=side: math.hypot(*each.wrenches[f"{side}_hand"][:3]))
 
 
 def statics(agent: Agent, tree: Tree, own: AgentDetail) -> dict[str, float]:
@@ -137,12 +137,12 @@ def statics(agent: Agent, tree: Tree, own: AgentDetail) -> dict[str, float]:
     poses = forward(tree, base, {joint: ca.DM(angle) for joint, angle in own.joints_rad.items()})
     applied = []
     for side in SIDES:
-        hand, sole = poses[agent.hands[side]], poses[agent.soles[side]]
-        force, moment = np.split(np.array(own.hand_wrenches[side]), 2)
-        applied.append(AppliedWrench(agent.hands[side], hand.position, ca.DM(force), ca.DM(moment)))
-        force, moment = np.split(np.array(own.foot_wrenches[side]), 2)
+        hand, sole = poses[agent.frame(f"{side}_hand")], poses[agent.frame(f"{side}_foot")]
+        force, moment = np.split(np.array(own.wrenches[f"{side}_hand"]), 2)
+        applied.append(AppliedWrench(agent.frame(f"{side}_hand"), hand.position, ca.DM(force), ca.DM(moment)))
+        force, moment = np.split(np.array(own.wrenches[f"{side}_foot"]), 2)
         wrench = sole.rotation @ force, sole.rotation @ moment
-        applied.append(AppliedWrench(agent.soles[side], sole.position, *wrench))
+        applied.append(AppliedWrench(agent.frame(f"{side}_foot"), sole.position, *wrench))
     found = cut(tree, poses, applied).torques
     return {joint: float(found[joint]) for joint in agent.joints}
 
@@ -169,14 +169,14 @@ def test_centres_of_pressure_are_where_the_ground_pushes(
 ) -> None:
     page.value("document.querySelectorAll('input[name=over-time]')[0].click()")
     lines = drawn(page, 3)
-    width = problem.scene.robot.sole_size.width
+    width = problem.scene.robot.feet[0].sole.width
     for side, middle in (("left", -0.75 * width), ("right", 0.75 * width)):
         across, forward = lines[f"centre of pressure, {side}"]
         outline = lines[f"{side} sole"]
         assert max(outline[0]) - min(outline[0]) == pytest.approx(width)
-        assert max(outline[1]) - min(outline[1]) == pytest.approx(problem.scene.robot.sole_size.length)
+        assert max(outline[1]) - min(outline[1]) == pytest.approx(problem.scene.robot.feet[0].sole.length)
         for instant, right, ahead in zip(run.details[0].cases[0].instants, across, forward, strict=True):
-            force, moment = np.split(np.array(instant.agents["robot"].foot_wrenches[side]), 2)
+            force, moment = np.split(np.array(instant.agents["robot"].wrenches[f"{side}_foot"]), 2)
             there = np.array([ahead, middle - right, 0.0])
             assert (moment - np.cross(there, force))[:2] == pytest.approx([0.0, 0.0], abs=1e-3)
 

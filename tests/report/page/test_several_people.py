@@ -67,7 +67,7 @@ def test_choosing_person_load_and_height_shows_that_case(page: Tab, run: RunLog)
         text = page.value("document.getElementById('height-detail').textContent")
         assert f"robot |torque| {shown_as(outcome.robot_torque_norm)} N m" in text
         cell = "document.querySelector('[data-agent=robot] tr:nth-child(2)').children[1].textContent"
-        force = detail.agents[ROBOT].foot_wrenches["left"][0]
+        force = detail.agents[ROBOT].wrenches["left_foot"][0]
         assert page.value(cell) == f"{force:.1f}".replace("-", "\u2212")
         label = f"{human}, {payload}, {height:.1f} m"
         page.wait_for(f"{CANVAS}.getAttribute('aria-label').includes({json.dumps(label)})")

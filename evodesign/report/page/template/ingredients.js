@@ -118,9 +118,9 @@ const wrenchCells = (wrench) =>
 
 const wrenchTable = (posture) => {
   const heads = ["", "Fx [N]", "Fy [N]", "Fz [N]", "Mx [N m]", "My [N m]", "Mz [N m]"];
-  const lines = (part, wrenches) =>
-    Object.entries(wrenches).map(([side, wrench]) =>
-      element("tr", {}, element("th", { scope: "row", text: `${side} ${part}` }), ...wrenchCells(wrench)),
+  const lines = (wrenches) =>
+    Object.entries(wrenches).map(([contact, wrench]) =>
+      element("tr", {}, element("th", { scope: "row", text: contact.replace("_", " ") }), ...wrenchCells(wrench)),
     );
   const groups = Object.entries(posture.agents).map(([agent, one]) =>
     element(
@@ -131,8 +131,7 @@ const wrenchTable = (posture) => {
         { class: "group" },
         element("th", { colspan: heads.length, scope: "rowgroup", text: AGENT_NAMES[agent] }),
       ),
-      ...lines("foot", one.foot_wrenches),
-      ...lines("hand", one.hand_wrenches),
+      ...lines(one.wrenches),
     ),
   );
   return element(

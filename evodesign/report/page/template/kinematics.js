@@ -60,8 +60,8 @@ const centreOfPressure = ([, , fz, mx, my]) => (fz > 1e-6 ? [-my / fz, mx / fz, 
 
 // Force of the ground on a foot, at its centre of pressure, in the world.
 const groundForces = (tree, poses, posture) =>
-  Object.entries(tree.soles).map(([side, sole]) => {
-    const wrench = posture.foot_wrenches[side];
+  Object.entries(tree.soles).map(([contact, sole]) => {
+    const wrench = posture.wrenches[contact];
     const pressure = centreOfPressure(wrench) ?? [0, 0, 0];
     const { rotation, position } = poses[sole];
     return { at: plus(position, turned(rotation, pressure)), force: turned(rotation, wrench.slice(0, 3)) };

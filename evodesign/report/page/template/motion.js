@@ -49,7 +49,7 @@ const powerLines = ({ postures }, agent) => {
 const handLines = ({ postures }, agent) =>
   ["left", "right"].map((side) => ({
     name: `${side} hand`,
-    values: postures.map(({ agents }) => Math.hypot(...agents[agent].hand_wrenches[side].slice(0, 3))),
+    values: postures.map(({ agents }) => Math.hypot(...agents[agent].wrenches[`${side}_hand`].slice(0, 3))),
   }));
 
 const drawOverTime = (place, times, lines, title) => {
@@ -100,7 +100,7 @@ const drawPressure = (place, { times, postures }, agent, person) => {
   const [long, wide] = [length / 2, width / 2];
   const traces = Object.entries(FEET).flatMap(([side, sign], index) => {
     const middle = sign * 0.75 * width;
-    const centres = postures.map((posture) => centreOfPressure(posture.agents[agent].foot_wrenches[side]));
+    const centres = postures.map((posture) => centreOfPressure(posture.agents[agent].wrenches[`${side}_foot`]));
     const outline = {
       type: "scatter",
       mode: "lines",
