@@ -31,7 +31,7 @@ from evodesign.posture.results import AgentPosture, Instant
 from evodesign.posture.seeking.starts import fixed_starts
 from evodesign.posture.symmetry import whole
 from evodesign.posture.terms.base import TORQUE_UNIT
-from evodesign.posture.terms.load import LOAD_UNIT, force_along_x
+from evodesign.posture.terms.load import LOAD_UNIT, push_on_load
 from evodesign.posture.terms.registry import TERMS
 from evodesign.problem.build import DesignProblem
 from evodesign.tree.model import Tree
@@ -66,7 +66,7 @@ class PaperPostures:
         built = paper_program(problem)
         self._statics = built.statics
         self._solver = Solver(built.program, replace(options, compiled=False))
-        self._start = fixed_starts(built.program)[0]
+        self._start = fixed_starts(built.program, ["human"])[0]
 
     def solve(self, values: Sequence[float], height: float) -> RawSolution:
         """What IPOPT finds for a design at a height [m], from the first of our fixed starts."""
@@ -176,7 +176,7 @@ def _program(
         rows = part.rows(part.posture, statics.feet(place), *parameters.values())
         pairs = zip(part.constraints, rows, strict=True)
         constraints += [replace(constraint, expression=row) for constraint, row in pairs]
-    push = force_along_x(scene.robot, statics.hands(0)) / LOAD_UNIT
+    push = push_on_load(statics.hands(0)) / LOAD_UNIT
     limit = scene.stance.push / LOAD_UNIT
     robot_joints = len(scene.robot.joints)
     effort = weights.robot * ca.sumsqr(statics.torques[:robot_joints])

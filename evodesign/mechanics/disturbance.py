@@ -37,26 +37,26 @@ class Disturbance:
         mass_share: by how much the load is heavier, as a share of its mass; above -1.
         center_of_mass: shift of the load's centre of mass [m].
         push: force in world axes [N].
-        at: what is pushed.
+        at: what is pushed: the load (`PushedAt.LOAD`), or an agent of a name.
     """
 
     name: str
     mass_share: float = 0.0
     center_of_mass: Vector = (0.0, 0.0, 0.0)
     push: Vector = (0.0, 0.0, 0.0)
-    at: PushedAt = PushedAt.LOAD
+    at: str = PushedAt.LOAD
 
     @property
     def sideways(self) -> bool:
         """Whether it has a part along y, so that what it leads to is not mirror-symmetric."""
         return bool(self.center_of_mass[1] != 0.0 or self.push[1] != 0.0)
 
-    def push_on(self, place: PushedAt) -> Vector:
-        """Its force on the load or an agent, in world axes [N]."""
-        return self.push if self.at is place else (0.0, 0.0, 0.0)
+    def push_on(self, place: str) -> Vector:
+        """Its force on the load (`PushedAt.LOAD`) or on an agent of a name, in world axes [N]."""
+        return self.push if self.at == place else (0.0, 0.0, 0.0)
 
-    def changes_for(self, place: PushedAt) -> bool:
-        """Whether an agent feels any of it, be it through its hands."""
+    def changes_for(self, place: str) -> bool:
+        """Whether an agent of a name feels any of it, be it through its hands."""
         changes_load = bool(self.mass_share) or any(self.center_of_mass)
         return changes_load or self.at in {PushedAt.LOAD, place}
 

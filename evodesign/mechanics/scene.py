@@ -1,8 +1,8 @@
-"""The scene: a robot and a person facing each other, holding a level load.
+"""The scene: robots and people who hold a level load, each from a side of its own.
 
-World frame: origin on the ground under the load, x from the robot towards the person, z up. Each agent also
-has a frame of its own, the world turned about z so that the agent looks along +x at the load; in it, robot
-and person obey the same constraints.
+World frame: origin on the ground under the load, z up; where one robot and one person face each other, x from
+the robot towards the person. Each agent has a frame of its own, the world turned about z by quarter turns so
+that the agent looks along +x at the load; in it, all agents obey the same constraints.
 """
 
 from __future__ import annotations
@@ -165,12 +165,17 @@ class Payload:
         mass = self.mass * (1.0 + disturbance.mass_share)
         return replace(self, mass=mass, center_of_mass=(moved[0], moved[1], moved[2]))
 
+    def faced(self, agent: Agent) -> Vector:
+        """Depth, width and height of the box as an agent sees it, along its own axes [m]."""
+        depth, width, height = self.size
+        return (width, depth, height) if agent.quarters % 2 else self.size
+
     def grasp_point(self, agent: Agent, hand: Contact) -> Vector:
         """Grasp point of an agent's hand, from the box's centre, in that agent's frame [m]."""
         given = self.grasp_points.get((agent.name, hand.name))
         if given is not None:
             return agent.from_world(given)
-        depth, width, height = self.size
+        depth, width, height = self.faced(agent)
         return (-depth / 2.0, 0.4 * width * TO_THE_LEFT[hand.side], height / 2.0)
 
 
@@ -359,8 +364,8 @@ class Scene:
 
     @property
     def pair(self) -> tuple[str, str]:
-        """Names of person and load, each empty where there is one."""
-        return self.human.label, self.payload.label
+        """Names of people and load, each empty where there is one."""
+        return " and ".join(each.label for each in self.people if each.label), self.payload.label
 
     @property
     def label(self) -> str:
@@ -378,7 +383,8 @@ class Scene:
 
     def case(self, task: Task) -> Case:
         """Its person with its load at a task, undisturbed."""
-        return Case(person=self.human.label, payload=self.payload.label, task=task)
+        person, payload = self.pair
+        return Case(person=person, payload=payload, task=task)
 
 
 def scene_of(scenes: Iterable[Scene], pair: tuple[str, str]) -> Scene:

@@ -35,7 +35,7 @@ class LiftCourse:
     """
 
     lift: Lift
-    forms: tuple[Form, Form]
+    forms: tuple[Form, ...]
     coefficients: Mapping[str, Mapping[str, Array]]
     carried: Mapping[str, Mapping[str, Array]]
     load: Array

@@ -31,7 +31,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from evodesign.mechanics.scene import HUMAN, ROBOT, Contact, Grasp
+from evodesign.mechanics.scene import Contact, Grasp
 from evodesign.nlp.blocks import Block
 from evodesign.nlp.program import ConstraintBlock, Expression, Variable
 from evodesign.posture.allocation import shared_scene, shared_weights
@@ -39,12 +39,11 @@ from evodesign.posture.assemble import (
     MOVING_PARTS,
     Assembly,
     CaseSymbols,
-    Embodied,
     PostureMotion,
     assemble,
     total,
 )
-from evodesign.posture.formulations.base import Setting
+from evodesign.posture.formulations.base import Setting, embodied
 from evodesign.posture.load_cases import counted_together
 from evodesign.posture.parting import Meetings, meetings_of, rows_of
 from evodesign.posture.symmetry import Form
@@ -122,7 +121,7 @@ class KnotBlocks:
     """
 
     def __init__(
-        self, forms: tuple[Form, Form], setting: Setting, *, switched: bool = False, timed: bool = False
+        self, forms: tuple[Form, ...], setting: Setting, *, switched: bool = False, timed: bool = False
     ) -> None:
         self.forms, self.timed, self._setting, self._switched = forms, timed, setting, switched
         self._time = ca.SX.sym("time", int(timed))
@@ -134,8 +133,7 @@ class KnotBlocks:
         values = ca.vertsplit(self.design)
         self._scene = shared_scene(scene, setting.space, values)
         self._weights = shared_weights(setting.weights, setting.space, values)
-        tree = setting.space.resized(scene.robot.tree, values)
-        self._parties = (Embodied(forms[0], tree), Embodied(forms[1], scene.human.tree))
+        self._parties = embodied(forms, setting.space, values)
         self._rates = {form.agent.name: _derivatives(form, "rate") for form in forms}
         self._changes = {form.agent.name: _derivatives(form, "change") for form in forms}
         rigid = scene.payload.grasp is Grasp.RIGID
@@ -202,7 +200,7 @@ class KnotBlocks:
     @cached_property
     def _carrying(self) -> tuple[Expression, tuple[Variable, ...], tuple[ConstraintBlock, ...]]:
         """What torques, wrenches and the posture itself cost, with what the worst load case adds."""
-        by_agent = {ROBOT: self._weights.robot, HUMAN: self._weights.human}
+        by_agent = self._weights.by_agent(self._scene.agents)
         held = self._assembly.undisturbed
         if not self.disturbances:
             return total([held.effort(by_agent), *held.regularisation]), (), ()

@@ -33,7 +33,7 @@ from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.results import AgentPosture, Attempt, CaseSolution
 from evodesign.posture.seeking.budget import BUDGET
-from evodesign.posture.symmetry import symmetric_forms, whole
+from evodesign.posture.symmetry import forms_of
 from evodesign.records import Lift, Status, worst_status
 
 Array = NDArray[np.float64]
@@ -300,8 +300,7 @@ def lift_program(setting: Setting, knots: int, *, symmetric: bool) -> LiftProgra
 
 def _blocks(setting: Setting, *, symmetric: bool, timed: bool = False) -> KnotBlocks:
     scene = setting.scene
-    halves = symmetric_forms(scene) if symmetric else (whole(scene.robot), whole(scene.human))
-    return KnotBlocks(halves, setting, timed=timed)
+    return KnotBlocks(forms_of(scene, symmetric=symmetric), setting, timed=timed)
 
 
 def _options(setting: Setting) -> SolverOptions:

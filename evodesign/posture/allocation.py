@@ -8,13 +8,13 @@ allocation effort_ratio e = log10(w_r / w_h) and w_r + w_h = 2,
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from evodesign.body.placement import Scalar
 from evodesign.design.parameter import EFFORT_RATIO, ROBOT_SHARE
 from evodesign.design.space import DesignSpace
-from evodesign.mechanics.scene import Scene
+from evodesign.mechanics.scene import Agent, Role, Scene
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +28,10 @@ class EffortWeights:
     def of_ratio(cls, exponent: Scalar) -> EffortWeights:
         """The weights of a ratio w_r / w_h = 10^exponent, which add up to 2."""
         return cls(2.0 / (1.0 + 10.0**-exponent), 2.0 / (1.0 + 10.0**exponent))
+
+    def by_agent(self, agents: Iterable[Agent]) -> dict[str, Scalar]:
+        """The weight of each agent's effort, by name."""
+        return {each.name: self.robot if each.role is Role.ROBOT else self.human for each in agents}
 
 
 def shared_scene(scene: Scene, space: DesignSpace, values: Sequence[Scalar]) -> Scene:

@@ -16,7 +16,7 @@ import casadi as ca
 import numpy as np
 
 from evodesign.mechanics.balance import AppliedWrench
-from evodesign.mechanics.disturbance import Disturbance, PushedAt
+from evodesign.mechanics.disturbance import Disturbance
 from evodesign.mechanics.inertial_forces import euler_motion, inertial_wrenches
 from evodesign.mechanics.scene import Agent, Contact, Scene
 from evodesign.nlp.program import ConstraintBlock, Expression, Variable
@@ -256,7 +256,7 @@ class _Assembler:
     def _instant(self, number: int) -> tuple[LoadCase, ...]:
         postures: dict[str, _Posture] = {}
         cases = [self._load_case(number, 0, UNDISTURBED, postures)]
-        places = [PushedAt(party.name) for party in self._embodied]
+        places = [party.name for party in self._embodied]
         for position, disturbance in enumerate(self._case.scene.disturbances.cases, 1):
             if any(disturbance.changes_for(place) for place in places):  # somebody with a body feels it
                 cases.append(self._load_case(number, position, disturbance, postures))
@@ -282,7 +282,7 @@ class _Assembler:
         hands = {name: body.hands for name, body in bodies.items()}
         for free in self._hands:
             asked, slot = hand_unknowns(free.free, scene.payload), Slot(instant, number, free.name, "")
-            found = {unknown.part: self._variable(unknown, f"{prefix}partner", slot) for unknown in asked}
+            found = {unknown.part: self._variable(unknown, f"{prefix}{free.name}", slot) for unknown in asked}
             hands[free.name] = all_hands(free.agent.hands, found)
         for name, body in bodies.items():
             rows = [row for term in self._body_terms for row in term.rows(body)]

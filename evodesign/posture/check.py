@@ -21,7 +21,7 @@ from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair
 from evodesign.collision.scene_bodies import CheckedBodies, SceneBodies
 from evodesign.mechanics.disturbance import Disturbance
 from evodesign.mechanics.floating_base import ROOT, BodyState, Configuration, FloatingBody
-from evodesign.mechanics.scene import Agent, Scene
+from evodesign.mechanics.scene import Agent, Role, Scene
 from evodesign.posture.results import AgentPosture, Array, Instant
 from evodesign.posture.terms.base import UNDISTURBED, BodyTerm, MeasuredBody, MeasuredSystem, Residual
 from evodesign.posture.terms.registry import TERMS
@@ -202,25 +202,25 @@ def own_overlaps(gaps: Iterable[BodyDistance]) -> dict[tuple[str, BodyPair], flo
 class Checker:
     """Residuals of postures of one design in a scene."""
 
-    def __init__(self, scene: Scene, robot: AgentModel, human: AgentModel) -> None:
-        self._scene = scene
-        self._models = (robot, human)
-        self._solids: dict[tuple[int, Vector], SceneBodies | None] = {}
+    def __init__(self, scene: Scene, *models: AgentModel) -> None:
+        self._scene, self._models = scene, models
+        self._solids: dict[tuple[tuple[int, ...], Vector], SceneBodies | None] = {}
 
     @property
     def robot(self) -> AgentModel:
         """Of the design."""
-        return self._models[0]
+        return next(model for model in self._models if model.agent.role is Role.ROBOT)
 
-    def elsewhere(self, scene: Scene, human: AgentModel) -> Checker:
-        """The check of the same robot in another scene."""
-        other = copy(self)
-        other._scene, other._models = scene, (self._models[0], human)
+    def elsewhere(self, scene: Scene, *people: AgentModel) -> Checker:
+        """The check of the same robots in another scene."""
+        other, robots = copy(self), [each for each in self._models if each.agent.role is Role.ROBOT]
+        other._scene, other._models = scene, (*robots, *people)
         return other
 
     def _bodies(self) -> SceneBodies | None:
-        """Of the robot, the scene's person and its load; worked out once for all scenes that have them."""
-        key = id(self._models[1]), self._scene.payload.size
+        """Of all agents and the load; worked out once for all scenes that have these people and this load."""
+        people = tuple(id(model) for model in self._models if model.agent.role is Role.PERSON)
+        key = people, self._scene.payload.size
         if key not in self._solids:
             solids = {model.agent.name: model.solid for model in self._models if model.solid is not None}
             self._solids[key] = SceneBodies(solids, self._scene.payload.size) if solids else None
@@ -314,7 +314,7 @@ class Unchecked(Checker):
     def __init__(self) -> None:
         """Of no scene."""
 
-    def elsewhere(self, scene: Scene, human: AgentModel) -> Checker:
+    def elsewhere(self, scene: Scene, *people: AgentModel) -> Checker:
         """Itself."""
         return self
 

@@ -24,7 +24,7 @@ from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.posture.seeking.candidate import Trial, case_solution
 from evodesign.posture.seeking.landscape import Landscape
 from evodesign.posture.solution_derivative import PostureDerivative
-from evodesign.posture.symmetry import symmetric_forms, whole
+from evodesign.posture.symmetry import forms_of, symmetric_forms
 from evodesign.records import ActiveLimit, Status
 from evodesign.tasks import Task, TaskRecord
 
@@ -65,7 +65,8 @@ class PostureProblem:
         self._made: dict[tuple[str, type[TaskRecord], MethodName], JointPostures] = {}
         self._latest: dict[tuple[JointPostures, Task, bool], tuple[object, Trial]] = {}
         if symmetry is not Symmetry.OFF:
-            setting.space.check_mirror(setting.scene.robot.tree)
+            for robot in setting.scene.robots:
+                setting.space.check_mirror(robot.tree)
             symmetric_forms(setting.scene)
 
     def solve(
@@ -266,9 +267,9 @@ class PostureProblem:
 
     def _joint(self, name: str, setting: Setting, kind: type[TaskRecord]) -> JointPostures:
         """The program of a formulation; beside the best whole robot people of other starts are put, too."""
+        forms = forms_of(setting.scene, symmetric=name == SYMMETRIC)
         if name == SYMMETRIC:
-            return JointPostures(name, symmetric_forms(setting.scene), setting, self._solvers, kind)
-        forms = (whole(setting.scene.robot), whole(setting.scene.human))
+            return JointPostures(name, forms, setting, self._solvers, kind)
         people = [start for found in self._known.postures.values() for start in found.starts]
         return JointPostures(name, forms, setting, self._solvers, kind, people)
 

@@ -42,7 +42,7 @@ class PostureDerivative:
     """
 
     layout: Layout
-    forms: tuple[Form, Form]
+    forms: tuple[Form, ...]
     scene: Scene
     times: tuple[float, ...]
     values: Mapping[str, Array]

@@ -20,7 +20,7 @@ import numpy as np
 from evodesign.body.placement import Placement
 from evodesign.errors import ModelError
 from evodesign.human.coupled_joints import Rhythm
-from evodesign.mechanics.disturbance import Disturbance, PushedAt
+from evodesign.mechanics.disturbance import Disturbance
 from evodesign.mechanics.scene import Agent, Contact, Scene, Touched
 from evodesign.posture.results import AgentPosture, Array
 from evodesign.tree.frames import link_frames
@@ -237,8 +237,13 @@ def _refuse_turned_soles(agent: Agent) -> None:
         raise ModelError(agent.tree.name, f"{agent.name}.soles", wanted, found)
 
 
-def symmetric_forms(scene: Scene) -> tuple[Form, Form]:
-    """The halves of robot and person in a scene that is its own mirror image.
+def forms_of(scene: Scene, *, symmetric: bool) -> tuple[Form, ...]:
+    """The forms of a scene's agents, in their order: halves where postures are symmetric."""
+    return symmetric_forms(scene) if symmetric else tuple(map(whole, scene.agents))
+
+
+def symmetric_forms(scene: Scene) -> tuple[Form, ...]:
+    """The halves of all agents in a scene that is its own mirror image.
 
     Raises:
         ModelError: naming what differs, or the disturbance that pushes to a side.
@@ -252,19 +257,23 @@ def symmetric_forms(scene: Scene) -> tuple[Form, Form]:
         if tuple(left) != (right[0], -right[1], right[2]):
             key = f"{agent.name}_grasps_m"
             raise ModelError("payload", key, "mirror images in a symmetric scene", f"{left} and {right}")
-    forms = half(scene.robot), half(scene.human)
+    for agent in scene.agents:
+        if agent.quarters % 2:
+            found = f"{agent.name} beside it, who looks across it"
+            raise ModelError(agent.tree.name, "", "agents before and behind a symmetric load", found)
+    forms = tuple(map(half, scene.agents))
     for disturbance in scene.disturbances.cases:
         _refuse_lopsided(disturbance, forms)
     return forms
 
 
-def _refuse_lopsided(disturbance: Disturbance, forms: tuple[Form, Form]) -> None:
+def _refuse_lopsided(disturbance: Disturbance, forms: tuple[Form, ...]) -> None:
     """Refuse what symmetric agents do not answer symmetrically."""
     where = f"disturbance '{disturbance.name}'"
     if disturbance.sideways:
         raise ModelError(where, "", "y = 0 everywhere in a symmetric scene", "a part along y")
     for form in forms:
-        pushed = any(disturbance.push_on(PushedAt(form.agent.name)))
+        pushed = any(disturbance.push_on(form.agent.name))
         frame = form.agent.pushed_frame if pushed else ""
         if pushed and form.mirror and (not form.mirror.is_middle(frame) or frame in form.mirror.loose):
             found = f"'{form.agent.pushed_frame}'"

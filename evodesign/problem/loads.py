@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from evodesign.errors import InputError
-from evodesign.mechanics.disturbance import Disturbance, Disturbances, PushedAt
+from evodesign.mechanics.disturbance import Disturbance, Disturbances
 from evodesign.mechanics.elbow import elbow
 from evodesign.mechanics.scene import (
     HUMAN,
@@ -150,6 +150,6 @@ def _refuse_trunkless(
     table: DisturbanceTable, agents: Sequence[Agent], key: str, source: ProblemSource
 ) -> None:
     for agent in agents:
-        if table.at is PushedAt(agent.name) and not agent.trunk:
+        if table.at == agent.name and not agent.trunk:
             wanted = f"a trunk to push: frames in {agent.name}.trunk"
             raise InputError(source.path, key, wanted, "none")

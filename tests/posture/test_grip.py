@@ -100,9 +100,7 @@ def test_a_narrow_cone_narrows_the_reach(problem: DesignProblem) -> None:
 def test_a_person_sees_the_load_within_the_cone(problem: DesignProblem, free: CaseSolution) -> None:
     head = problem.scene.human.tree.link_by_name["Head"]
     scenes = [
-        replace(
-            problem.scene, human=replace(problem.scene.human, gaze=Gaze("Head", head.inertia.center, cone))
-        )
+        problem.scene.with_agents(replace(problem.scene.human, gaze=Gaze("Head", head.inertia.center, cone)))
         for cone in (1e-9, math.radians(5.0))
     ]
     off = sizes(checker_of(scenes[0]).residuals(free.instants[0], LOW))["human.gaze"]

@@ -136,7 +136,7 @@ def test_people_who_stand_most_differently_stand_for_all(problem: DesignProblem)
     )
     turns = [0.05 * number for number in range(24)]
     starts = [{**start, "human.joints": start["human.joints"] + turn} for turn in turns]
-    found = different_people(program, [half_start, *starts, {"robot.joints": start["robot.joints"]}])
+    found = different_people(program, [half_start, *starts, {"robot.joints": start["robot.joints"]}], [HUMAN])
     assert len(found) == BUDGET.people == 16
     assert [person["human.joints"][0] for person in found[:2]] == [turns[0], turns[-1]]
     assert abs(found[2]["human.joints"][0] - 0.55) < 0.1

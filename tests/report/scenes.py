@@ -54,8 +54,8 @@ def random_posture(agent: Agent, rng: np.random.Generator) -> AgentDetail:
         joints_rad=dict(zip(agent.joints, numbers(0.8, len(agent.joints)), strict=True)),
         torques_n_m=dict(zip(agent.joints, numbers(10.0, len(agent.joints)), strict=True)),
         wrenches={
-            **{hand.name: numbers(10.0, 6) for hand in agent.hands},
             **{foot.name: (*numbers(10.0, 2), 300.0, *numbers(10.0, 3)) for foot in agent.feet},
+            **{hand.name: numbers(10.0, 6) for hand in agent.hands},
         },
     )
 

@@ -7,14 +7,18 @@ assembled from the same terms.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from evodesign.body.placement import Scalar
 from evodesign.design.space import DesignSpace
 from evodesign.human.measured_posture import MeasuredPosture
 from evodesign.identity import Exceptions, digest
-from evodesign.mechanics.scene import Agent, Payload, Scene
+from evodesign.mechanics.scene import Agent, Payload, Role, Scene
 from evodesign.nlp.method import SolverOptions
 from evodesign.posture.allocation import EffortWeights
+from evodesign.posture.assemble import Embodied
+from evodesign.posture.symmetry import Form
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +38,20 @@ class Setting:
     weights: EffortWeights
     options: SolverOptions
     lowest_asked: float = 0.0
+
+
+def embodied(forms: Iterable[Form], space: DesignSpace, values: Sequence[Scalar]) -> tuple[Embodied, ...]:
+    """Agents with their bodies, robots with the hardware of a design.
+
+    Args:
+        forms: of the agents.
+        space: design parameters.
+        values: one number or expression per parameter.
+    """
+    return tuple(
+        Embodied(form, space.resized(tree, values) if form.agent.role is Role.ROBOT else tree)
+        for form, tree in ((form, form.agent.tree) for form in forms)
+    )
 
 
 NO_PART_OF_PROGRAMS: Exceptions = {

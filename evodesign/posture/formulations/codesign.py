@@ -29,19 +29,20 @@ import numpy as np
 
 from evodesign.design.parameter import ParameterKind
 from evodesign.design.space import DesignSpace
-from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import Array, Expression, Program, Start, Variable
 from evodesign.nlp.solver import RawSolution, Solver
 from evodesign.posture.allocation import EffortWeights, shared_scene
-from evodesign.posture.assemble import CaseSymbols, Embodied, LoadCase, assemble
+from evodesign.posture.assemble import CaseSymbols, LoadCase, assemble
 from evodesign.posture.check import AgentModel, Checker, sizes
+from evodesign.posture.formulations.base import embodied
 from evodesign.posture.limit_groups import Enforced
 from evodesign.posture.parting import parted
 from evodesign.posture.results import Attempt, CaseSolution, Instant
 from evodesign.posture.seeking.candidate import checked
 from evodesign.posture.seeking.seeker import Seeker
-from evodesign.posture.symmetry import Form, symmetric_forms, whole
+from evodesign.posture.symmetry import Form, forms_of
 from evodesign.posture.terms.base import TORQUE_UNIT, Residual
 from evodesign.posture.terms.floating_base import coordinate_ranges
 from evodesign.posture.terms.paper_tasks import Tasks, pressure_task
@@ -132,8 +133,7 @@ class JointProblem:
         self._space = space
         self._tasks = tuple(tasks)
         self._enforced = settings.enforced
-        both = (whole(scene.robot), whole(scene.human))
-        self._forms = symmetric_forms(scene) if settings.symmetric else both
+        self._forms = forms_of(scene, symmetric=settings.symmetric)
         self._human = AgentModel.of(scene.human, scene.human.tree)
         design = _design_variable(space, settings.enforced, fixed)
         self.program = _program(self._forms, scene, space, design, self._tasks, settings)
@@ -248,7 +248,7 @@ def _design_variable(space: DesignSpace, enforced: Enforced, fixed: Genome | Non
 
 
 def _program(
-    forms: tuple[Form, Form],
+    forms: tuple[Form, ...],
     scene: Scene,
     space: DesignSpace,
     design: Variable,
@@ -262,9 +262,10 @@ def _program(
     scene = shared_scene(scene, space, values)
     tree = space.resized(scene.robot.tree, values)
     cost = settings.tasks.of_design(space, values, scene.robot, tree)
-    parties = (Embodied(forms[0], tree), Embodied(forms[1], scene.human.tree))
     case = CaseSymbols(scene, tuple(task.height_m for task in tasks))
-    assembly = assemble(parties, TERMS.values(), case, settings.enforced, switched=switched)
+    assembly = assemble(
+        embodied(forms, space, values), TERMS.values(), case, settings.enforced, switched=switched
+    )
     for (load_case,) in assembly.instants:
         for part in _height_costs(load_case, settings):
             cost += part
@@ -278,7 +279,8 @@ def _program(
 
 def _height_costs(load_case: LoadCase, settings: JointSettings) -> list[Expression]:
     """Each agent's W1 t1 + W3 t3 + regularisation at one height, then the system's costs."""
-    tasks, weights = settings.tasks.weights, {ROBOT: settings.efforts.robot, HUMAN: settings.efforts.human}
+    tasks = settings.tasks.weights
+    weights = settings.efforts.by_agent(body.agent for body in load_case.bodies.values())
     costs = []
     for position, (name, body) in enumerate(load_case.bodies.items()):
         cost = (

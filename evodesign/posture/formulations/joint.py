@@ -18,16 +18,16 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.scene import Role
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import Program, Start
 from evodesign.nlp.sensitivity import SolutionSensitivity
 from evodesign.nlp.solver import RawSolution, Solver, SolverCache
 from evodesign.posture.active_limits import LimitSlopes, priced
 from evodesign.posture.allocation import shared_scene, shared_weights
-from evodesign.posture.assemble import CaseSymbols, Embodied, assemble, total
+from evodesign.posture.assemble import CaseSymbols, assemble, total
 from evodesign.posture.check import Checker, own_overlaps
-from evodesign.posture.formulations.base import Setting, program_key
+from evodesign.posture.formulations.base import Setting, embodied, program_key
 from evodesign.posture.formulations.person import PersonProblem
 from evodesign.posture.load_cases import WorstCase, aggregated
 from evodesign.posture.parting import Parted, parted
@@ -54,7 +54,7 @@ class JointPostures:
 
     Args:
         name: of the formulation.
-        forms: whole agents, or their halves.
+        forms: of all agents of the scene, in their order.
         setting: of the problem.
         solvers: of other scenes.
         kind: of the tasks.
@@ -64,7 +64,7 @@ class JointPostures:
     def __init__(
         self,
         name: str,
-        forms: tuple[Form, Form],
+        forms: tuple[Form, ...],
         setting: Setting,
         solvers: SolverCache,
         kind: type[TaskRecord] = Hold,
@@ -105,8 +105,8 @@ class JointPostures:
     def _fixed_starts(self, task: Task) -> tuple[Start, ...]:
         """With a person who is drawn to measured postures at their mean, and at two others."""
         program = self._solver.program
-        starts = fixed_starts(program)
-        people = measured_starts(program, self._forms[1], self._setting.scene, task.heights)
+        starts = fixed_starts(program, self._people_names)
+        people = self._measured(task)
         if people:
             mean, *others = people
             robots = (*((start, mean) for start in starts), *((starts[0], person) for person in others))
@@ -114,14 +114,27 @@ class JointPostures:
         return starts[:1] if self._setting.options.seldom else starts  # docs/benchmarks.md
 
     @cached_property
+    def _people_names(self) -> tuple[str, ...]:
+        return tuple(form.agent.name for form in self._forms if form.agent.role is Role.PERSON)
+
+    def _measured(self, task: Task) -> list[Start]:
+        """The people's side of starts at measured postures; none where nobody is drawn to one."""
+        program, scene = self._solver.program, self._setting.scene
+        own = [measured_starts(program, form, scene, task.heights) for form in self._forms]
+        return [
+            {name: values for start in starts for name, values in start.items()}
+            for starts in zip(*filter(None, own), strict=True)
+        ]
+
+    @cached_property
     def _standing(self) -> tuple[str, ...]:
-        """Names of the variables that say where the person's base and joints are."""
-        own = layout_of(self._solver.program, HUMAN).items()
+        """Names of the variables that say where people's bases and joints are."""
+        own = layout_of(self._solver.program, *self._people_names).items()
         return tuple(name for slot, name in own if slot.part in POSTURE)
 
     @cached_property
     def _people(self) -> list[Start]:
-        return different_people(self._solver.program, self._others)
+        return different_people(self._solver.program, self._others, self._people_names)
 
     @cached_property
     def _exchange(self) -> Exchange:
@@ -157,11 +170,12 @@ class JointPostures:
         Agents mostly push or pull as far as they may, so the person alone does both. Whole people have more
         ways to stand than a few stand for: theirs is not known.
         """
-        program, form, setting = self._solver.program, self._forms[1], self._setting
-        measured = measured_starts(program, form, setting.scene, task.heights)
-        if measured or form.mirror is None:
+        program, setting, measured = self._solver.program, self._setting, self._measured(task)
+        roles, form = [form.agent.role for form in self._forms], self._forms[-1]
+        if measured or roles != [Role.ROBOT, Role.PERSON] or form.mirror is None:
             return tuple(measured[:1])
-        scene, own = setting.scene.undisturbed, layout_of(program, HUMAN).values()
+        own = layout_of(program, *self._people_names).values()
+        scene = setting.scene.undisturbed
         alone = PersonProblem(form, scene, setting.weights.human, setting.options, self._solvers)
         pushes = dict.fromkeys((-scene.stance.push, scene.stance.push))
         ends = [alone.best_of_many(task.heights[0], push) for push in pushes]
@@ -169,11 +183,12 @@ class JointPostures:
 
     @cached_property
     def person(self) -> frozenset[str]:
-        """Names of all that starts say of the person."""
+        """Names of all that starts say of people."""
         program = self._solver.program
-        own = layout_of(program, HUMAN).values()
-        switches = program.switches
-        return frozenset([*own, *(switches.names_of(HUMAN) if isinstance(switches, Parted) else ())])
+        own, switches = layout_of(program, *self._people_names).values(), program.switches
+        if not isinstance(switches, Parted):
+            return frozenset(own)
+        return frozenset(own).union(*map(switches.names_of, self._people_names))
 
     def cleared(self, design: Sequence[float], raw: RawSolution, task: Task, checker: Checker) -> RawSolution:
         """What a solution leads to in which the check finds no bodies in each other, or one that failed.
@@ -204,7 +219,7 @@ class JointPostures:
         Beside a robot alone a measured person stands at the mean: in a T-pose the direction of the upper arm
         has no derivative.
         """
-        if portfolio and self._forms[1].agent.measured is not None:
+        if portfolio and any(form.agent.measured is not None for form in self._forms):
             mean = {name: self._fixed(task)[0][name] for name in self._standing}
             portfolio = [{**mean, **start} for start in portfolio]
         starts = named_starts(self._solver, portfolio, self._fixed(task))
@@ -380,7 +395,7 @@ class JointPostures:
 
 
 def posture_program(
-    forms: tuple[Form, Form], setting: Setting, kind: type[TaskRecord] = Hold, *, switched: bool = False
+    forms: tuple[Form, ...], setting: Setting, kind: type[TaskRecord] = Hold, *, switched: bool = False
 ) -> Program:
     """The program over both agents; parameters are the design, the task's numbers, load's mass, and who."""
     space = setting.space
@@ -390,11 +405,9 @@ def posture_program(
     given = {name: ca.SX.sym(name) for name in kind.PARAMETERS}
     values = ca.vertsplit(design)
     scene, weights = shared_scene(scene, space, values), shared_weights(setting.weights, space, values)
-    by_agent = {ROBOT: weights.robot, HUMAN: weights.human}
-    robot = Embodied(forms[0], space.resized(scene.robot.tree, values))
-    human = Embodied(forms[1], scene.human.tree)
+    by_agent = weights.by_agent(scene.agents)
     case = CaseSymbols(scene, kind.load_heights(given))
-    assembly = assemble((robot, human), TERMS.values(), case, switched=switched)
+    assembly = assemble(embodied(forms, space, values), TERMS.values(), case, switched=switched)
     undisturbed = [load_cases[0] for load_cases in assembly.instants]
     whole = [part for each in undisturbed for part in (each.effort(by_agent), *each.regularisation)]
     program = Program(

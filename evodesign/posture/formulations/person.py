@@ -27,7 +27,7 @@ from evodesign.posture.seeking.measured_starts import measured_starts
 from evodesign.posture.seeking.seeker import Seeker
 from evodesign.posture.seeking.starts import person_starts
 from evodesign.posture.symmetry import Form
-from evodesign.posture.terms.load import any_load, force_along_x
+from evodesign.posture.terms.load import any_load, push_on_load
 from evodesign.posture.terms.measured_posture import any_person, person_parameters
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.warm_start import instants_of, layout_of
@@ -100,7 +100,7 @@ def person_program(form: Form, scene: Scene, weight: float, *, switched: bool = 
     parties: list[Party] = [Embodied(form, form.agent.tree), *free_hands_beside(form, scene)]
     assembly = assemble(parties, TERMS.values(), CaseSymbols(scene, (height,)), switched=switched)
     load_case = assembly.undisturbed
-    given = (force_along_x(scene.robot, load_case.hands[ROBOT]) - internal) / PUSH_UNIT
+    given = (push_on_load(load_case.hands[ROBOT]) - internal) / PUSH_UNIT
     return Program(
         name="person",
         variables=assembly.variables,

@@ -39,7 +39,7 @@ from evodesign.posture.seeking.landscape import Landscape
 from evodesign.posture.seeking.seeker import Seeker
 from evodesign.posture.seeking.starts import person_starts, universal_starts
 from evodesign.posture.solution_derivative import ReachDerivative
-from evodesign.posture.symmetry import Form, symmetric_forms, whole
+from evodesign.posture.symmetry import Form, forms_of
 from evodesign.posture.terms.load import any_load
 from evodesign.posture.terms.registry import TERMS
 from evodesign.posture.warm_start import filled, layout_of
@@ -133,7 +133,7 @@ class ReachProblem:
     ) -> None:
         setting = _with_own_rows(setting)
         scene = setting.scene
-        self.form = symmetric_forms(scene)[0] if symmetric else whole(scene.robot)
+        self.form = forms_of(scene, symmetric=symmetric)[scene.agents.index(scene.robot)]
         self._setting, self._solvers = setting, solvers or SolverCache()
         self._starts = {HIGHEST: known.highest.starts, LOWEST: known.lowest.starts}
         self._latest: dict[float, tuple[tuple[float, ...], list[RawSolution]]] = {}
@@ -364,7 +364,7 @@ def person_reach(scene: Scene, options: SolverOptions, *, symmetric: bool) -> Pe
     A person's own bodies may pass through each other here, and no measured posture draws the person.
     """
     scene = scene.with_agents(replace(scene.human, collisions=None, measured=None))
-    form = symmetric_forms(scene)[1] if symmetric else whole(scene.human)
+    form = forms_of(scene, symmetric=symmetric)[scene.agents.index(scene.human)]
     solver = Solver(reach_program(form, form.agent.tree, scene, {}), options)
     ends: dict[float, float] = {}
     for sense in (LOWEST, HIGHEST):

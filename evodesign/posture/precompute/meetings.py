@@ -21,7 +21,7 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.joint import JointPostures
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
 from evodesign.posture.results import AgentPosture
-from evodesign.posture.symmetry import Form, symmetric_forms, whole
+from evodesign.posture.symmetry import Form, forms_of
 from evodesign.tasks import Task
 
 _Met = tuple[str, BodyPair]
@@ -92,7 +92,7 @@ class _Finder:
         )
         options = replace(setting.options, seldom=True)
         self.scene, self._free = scene, free
-        self.forms = symmetric_forms(free) if symmetric else (whole(free.robot), whole(free.human))
+        self.forms = forms_of(free, symmetric=symmetric)
         self._setting, self._symmetric = replace(setting, scene=free, options=options), symmetric
         self._robot, self._human = (AgentModel.of(agent, agent.tree) for agent in scene.agents)
         space = setting.space

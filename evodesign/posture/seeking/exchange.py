@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.scene import Role
 from evodesign.nlp.program import Program
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.assemble import Slot
@@ -30,6 +30,7 @@ class Exchange:
 
     def __init__(self, program: Program, forms: Sequence[Form]) -> None:
         counts = {form.agent.name: np.array(form.counts) for form in forms}
+        self._agents = [form.agent for form in forms]
         torques = [(v.key, v.name) for v in program.variables if isinstance(v.key, Slot)]
         self._torques = [
             (slot.party, slot.load_case, name, counts[slot.party])
@@ -39,7 +40,7 @@ class Exchange:
         self._load_cases = 1 + max((case for _, case, _, _ in self._torques), default=0)
 
     def best(self, postures: Sequence[Mapping[str, Array]], weights: EffortWeights) -> tuple[int, int] | None:
-        """Whose robot and whose person promise most together; None where no pair promises enough.
+        """Whose robots and whose people promise most together; None where no pair promises enough.
 
         Args:
             postures: values of solutions by variable name, SI units.
@@ -47,12 +48,12 @@ class Exchange:
         """
         if len(postures) < 2:
             return None
-        by_agent = {ROBOT: weights.robot, HUMAN: weights.human}
-        efforts = {name: np.zeros((len(postures), self._load_cases)) for name in by_agent}
+        by_agent, roles = weights.by_agent(self._agents), {each.name: each.role for each in self._agents}
+        efforts = {role: np.zeros((len(postures), self._load_cases)) for role in Role}
         for party, load_case, name, counts in self._torques:
             squares = np.array([values[name] for values in postures]) ** 2
-            efforts[party][:, load_case] += by_agent[party] * (squares @ counts)
-        pairs = (efforts[ROBOT][:, None] + efforts[HUMAN][None, :]).max(axis=2)
+            efforts[roles[party]][:, load_case] += by_agent[party] * (squares @ counts)
+        pairs = (efforts[Role.ROBOT][:, None] + efforts[Role.PERSON][None, :]).max(axis=2)
         robot, person = np.unravel_index(int(np.argmin(pairs)), pairs.shape)
         enough = pairs[robot, person] < BUDGET.exchange * np.diag(pairs).min()
         return (int(robot), int(person)) if enough else None

@@ -13,7 +13,7 @@ import numpy as np
 
 from evodesign.body.placement import Placement
 from evodesign.human.measured_posture import SIDES, SPINE, MeasuredPosture
-from evodesign.mechanics.scene import HUMAN, Scene
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.program import Program, Start
 from evodesign.posture.assemble import JOINTS, Slot
 from evodesign.posture.results import AgentPosture
@@ -50,8 +50,8 @@ def measured_starts(program: Program, form: Form, scene: Scene, heights: Sequenc
             parts = form.parts(mean_posture(form, given, grasp[0], eta))
             start |= {
                 name: parts[slot.part]
-                for slot, name in layout_of(program, HUMAN).items()
-                if slot == Slot(number, 0, HUMAN, slot.part) and slot.part in POSTURE
+                for slot, name in layout_of(program, form.agent.name).items()
+                if slot == Slot(number, 0, form.agent.name, slot.part) and slot.part in POSTURE
             }
         starts.append({name: np.clip(value, *bounds[name]) for name, value in start.items()})
     return starts

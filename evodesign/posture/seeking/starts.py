@@ -2,33 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Sequence
 from itertools import product
 
 import numpy as np
 
-from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.program import Program, Start, Variable
 from evodesign.nlp.solver import Solver
 from evodesign.posture.assemble import Slot
 from evodesign.posture.results import Array
 from evodesign.posture.seeking.budget import BUDGET
 
-SHARES: tuple[Mapping[str, float], ...] = ({ROBOT: 0.5, HUMAN: 0.5}, {ROBOT: 1.0, HUMAN: 0.5})
-"""Fixed starts, as the share of the way from zero to the middle of each joint's range, by agent.
+SHARES = ((0.5, 0.5), (1.0, 0.5))
+"""Fixed starts, as the share of the way from zero to the middle of each joint's range: of robots, of people.
 
 Of nine such starts this pair came within 2 % of the best of 19 on 86 % of 42 heights of random designs; a
 start portfolio does better and takes their place where there is one.
 """
 
 
-def fixed_starts(program: Program) -> tuple[Start, ...]:
-    """A program's own starting values, with the joints of each agent a share of the way to mid-range."""
+def fixed_starts(program: Program, people: Collection[str]) -> tuple[Start, ...]:
+    """A program's own starting values, with the joints of each agent a share of the way to mid-range.
+
+    Args:
+        program: whose variables they are of.
+        people: names of the agents that are people.
+    """
     own = {variable.name: variable.start for variable in program.variables}
     return tuple(
         own
         | {
-            joints.name: _inside(joints, shares[agent] * _middle(joints))
+            joints.name: _inside(joints, shares[agent in people] * _middle(joints))
             for agent, joints in _joints(program)
         }
         for shares in SHARES
@@ -49,7 +53,7 @@ def universal_starts(program: Program, people: Sequence[Start] = ()) -> tuple[St
     own: Start = {variable.name: variable.start for variable in program.variables}
     sides = [
         people
-        if people and agent == HUMAN
+        if people and any(joints.name in person for person in people)
         else [{joints.name: _inside(joints, share * _middle(joints))} for share in UNIVERSAL]
         for agent, joints in _joints(program)
     ]
@@ -74,7 +78,7 @@ def named_starts(
     return [(f"{kind} {number}", start) for number, start in enumerate(starts, 1)]
 
 
-def different_people(program: Program, starts: Sequence[Start]) -> list[Start]:
+def different_people(program: Program, starts: Sequence[Start], names: Collection[str]) -> list[Start]:
     """The people of starts, by variable name: those who stand most differently, as a few stand for all.
 
     Robot and person have several ways to stand each, and only the load couples them: starts of both together
@@ -82,10 +86,11 @@ def different_people(program: Program, starts: Sequence[Start]) -> list[Start]:
 
     Args:
         program: of both agents.
-        starts: those that do not fit the person's variables, made for another form, are left out.
+        starts: those that do not fit the people's variables, made for another form, are left out.
+        names: of the agents that are people.
     """
     slots = {v.name: (v.key, v.symbol.numel()) for v in program.variables if isinstance(v.key, Slot)}
-    own = {name: (slot, rows) for name, (slot, rows) in slots.items() if slot.party == HUMAN}
+    own = {name: (slot, rows) for name, (slot, rows) in slots.items() if slot.party in names}
     people = [
         {name: start[name] for name in own}
         for start in starts

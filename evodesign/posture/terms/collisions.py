@@ -188,7 +188,7 @@ def _shapes_at(body: Body, link: str, pose: Pose) -> list[PlacedShape]:
 
 
 def _load(body: Body) -> PlacedShape:
-    depth, width, height = body.scene.payload.size
+    depth, width, height = body.scene.payload.faced(body.agent)
     box = ConvexShape(Placement(), (depth / 2.0, width / 2.0, height / 2.0))
     return placed_shape(box, Pose(ca.SX.eye(3), ca.vertcat(0.0, 0.0, body.load_height)))
 

@@ -102,7 +102,7 @@ def _standing(agent: Agent, scene: Scene) -> list[float]:
     """Base position [m] from which a solve begins: soles on the ground with all joints at zero."""
     poses = forward(agent.tree, Pose(ca.DM.eye(3), ca.DM.zeros(3)), {})
     lowest = min(float(poses[frame].position[2]) for frame in agent.foot_frames)
-    back = scene.payload.size[0] / 2.0 + scene.stance_of(agent).trunk_clearance + 0.1
+    back = scene.payload.faced(agent)[0] / 2.0 + scene.stance_of(agent).trunk_clearance + 0.1
     return [-back, 0.0, -lowest]
 
 

@@ -1,4 +1,4 @@
-"""The load: level, still, and held by up to four hands.
+"""The load: level, still, and held by all hands.
 
     sum_i f_i + (0, 0, -m g) = 0        sum_i (r_i x f_i + n_i) + c x (0, 0, -m g) = 0
 
@@ -6,11 +6,12 @@ with f_i and n_i the force and moment of hand i on the load (no moment with `poi
 r_i its grasp point and c the centre of mass, both from the box's centre. The agents push against each other
 with the internal force
 
-    X = (X_robot - X_human) / 2        X_a agent a's force on the load along the world's x
+    X = (X_1 + X_2) / 2        X_a agent a's force on the load along its own x, in which it looks at the load
 
-which is the robot's push where nothing else pushes the load. Where the robot's share s is given, its hands
-carry s m g. Where rigid grasps leave it free, it lies between 0 and 1: without that bound the best posture
-lifts the partner by the load with hundreds of newtons.
+of two who face each other, which is the push of either where nothing else pushes the load. Whoever holds the
+load from a side on which nobody is opposite pushes with X = X_a. Where the robots' share s is given, their
+hands carry s m g. Where rigid grasps leave it free, it lies between 0 and 1: without that bound the best
+posture lifts the partner by the load with hundreds of newtons.
 
 A load that is lifted is as much heavier as its acceleration asks for: m (g + a).
 
@@ -28,7 +29,7 @@ import pinocchio as pin
 
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, PushedAt
-from evodesign.mechanics.scene import Agent, Grasp, Scene
+from evodesign.mechanics.scene import Agent, Grasp, Role, Scene
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.terms.base import (
     UNDISTURBED,
@@ -62,14 +63,24 @@ def turned_to_world(agent: Agent, in_agent: Expression) -> Expression:
     return ca.sparsify(ca.DM(agent.turn)) @ in_agent
 
 
-def force_along_x(agent: Agent, hands: Mapping[str, Expression]) -> Expression:
-    """Force of an agent on the load along the world's x, from the robot towards the person [N].
+def push_on_load(hands: Mapping[str, Expression]) -> Expression:
+    """Force of an agent on the load along the agent's own x, in which it looks at the load [N].
 
     Args:
-        agent: robot or person.
         hands: wrenches on its hands, in its frame, by name.
     """
-    return sum(-turned_to_world(agent, wrench[:3])[0] for wrench in hands.values())
+    return sum(-wrench[0] for wrench in hands.values())
+
+
+def pushing(scene: Scene) -> list[tuple[Agent, ...]]:
+    """Who push against each other through the load: two who face each other, or one at the side of others.
+
+    An agent alone pushes against nobody.
+    """
+    if len(scene.agents) == 1:
+        return []
+    axes = [[agent for agent in scene.agents if agent.quarters % 2 == axis] for axis in range(2)]
+    return [tuple(agents) for agents in axes if agents]
 
 
 def rows(coupled: Coupled) -> Iterator[Row]:
@@ -81,20 +92,21 @@ def rows(coupled: Coupled) -> Iterator[Row]:
     if disturbance is not UNDISTURBED:
         force = weight + vector(disturbance.push_on(PushedAt.LOAD))
     unbalanced = _unbalanced(coupled, scene, force, weight)
-    internal = _internal_force(coupled)
-    carried = -sum(wrench[2] for wrench in coupled.hands[scene.robot.name].values())
+    internal = _internal_forces(coupled)
+    carried = -sum(wrench[2] for agent in scene.robots for wrench in coupled.hands[agent.name].values())
     limit = scene.stance.push / LOAD_UNIT
     balance = ("load.force_balance", "load.moment_balance")
     yield Row("load.balance", unbalanced / LOAD_UNIT, 0.0, 0.0, balance, LOAD_UNIT)
     most = Bound(INTERNAL_FORCE, scene.stance.push, "N", True, 1.0 / LOAD_UNIT, "limits.push_n")
     apart, together = both_ways(most)
     row = Row(PUSH, internal / LOAD_UNIT, -limit, limit, (PUSH,), LOAD_UNIT, LimitGroup.STANCE)
-    yield replace(row, least=(apart,), most=(together,))
+    if internal.numel():
+        yield replace(row, least=(apart,), most=(together,))
     whole = -force[2]
     if scene.robot_share is not None:
         missing = (carried - scene.robot_share * whole) / LOAD_UNIT
         yield Row("load.share", missing, 0.0, 0.0, ("load.share",), LOAD_UNIT)
-    elif scene.payload.grasp is Grasp.RIGID:
+    elif scene.payload.grasp is Grasp.RIGID and scene.robots and scene.people:
         parts, share = ca.vertcat(carried, whole - carried) / LOAD_UNIT, "robot's share of the load"
         per_share = whole / LOAD_UNIT
         ends = Bound(share, 0.0, "1", False, per_share), Bound(share, 1.0, "1", True, -per_share)
@@ -105,13 +117,14 @@ def _disturbed(scene: Scene, disturbance: Disturbance) -> Scene:
     return replace(scene, payload=scene.payload.disturbed(disturbance))
 
 
-def _internal_force(coupled: Coupled) -> Expression:
-    """X [N]; the load's balance makes it the robot's push where nothing else pushes."""
-    agents = coupled.scene.agents
-    if coupled.disturbance is UNDISTURBED:
-        return force_along_x(agents[0], coupled.hands[agents[0].name])
-    robot, human = (force_along_x(agent, coupled.hands[agent.name]) for agent in agents)
-    return (robot - human) / 2.0
+def _internal_forces(coupled: Coupled) -> Expression:
+    """X [N] of everyone who push against each other, a column."""
+    found = []
+    for agents in pushing(coupled.scene):
+        one, *others = (push_on_load(coupled.hands[agent.name]) for agent in agents)
+        disturbed = others and coupled.disturbance is not UNDISTURBED
+        found.append((one + others[0]) / 2.0 if disturbed else one)
+    return ca.vertcat(ca.SX(0, 1), *found)
 
 
 def _unbalanced(coupled: Coupled, scene: Scene, force: Expression, weight: Expression) -> Expression:
@@ -142,7 +155,7 @@ def residuals(system: MeasuredSystem) -> Iterator[Residual]:
     weight = np.array([0.0, 0.0, -(GRAVITY + system.load_acceleration) * payload.mass])
     force, moment = weight + outside, pin.skew(np.array(payload.center_of_mass)) @ weight
     passed, carried = 0.0, 0.0
-    along_x = {agent.name: 0.0 for agent in scene.agents}
+    pushes = {agent.name: 0.0 for agent in scene.agents}
     for agent in scene.agents:
         world_from_agent = agent.turn
         for hand in agent.hands:
@@ -151,16 +164,17 @@ def residuals(system: MeasuredSystem) -> Iterator[Residual]:
             point = world_from_agent @ np.array(payload.grasp_point(agent, hand))
             force = force + on_load
             moment = moment + pin.skew(point) @ on_load - world_from_agent @ wrench[3:]
-            along_x[agent.name] += float(on_load[0])
-            if agent is scene.robot:
+            pushes[agent.name] -= float(wrench[0])
+            if agent.role is Role.ROBOT:
                 carried += float(on_load[2])
             passed = max(passed, float(np.abs(wrench[3:]).max()))
     yield Residual("load.force_balance", float(np.abs(force).max()), "N", "the load's balance of forces")
     yield Residual("load.moment_balance", float(np.abs(moment).max()), "N m", "the load's balance of moments")
-    internal = along_x[scene.robot.name]
-    if system.disturbance is not UNDISTURBED:
-        internal = (internal - along_x[scene.human.name]) / 2.0
-    beyond = max(0.0, abs(internal) - scene.stance.push)
+    internal = [0.0]
+    for first, *opposite in pushing(scene):
+        mean = [pushes[first.name], *(pushes[agent.name] for agent in opposite)]
+        internal.append(abs(float(np.mean(mean) if system.disturbance is not UNDISTURBED else mean[0])))
+    beyond = max(0.0, max(internal) - scene.stance.push)
     yield Residual(PUSH, beyond, "N", "the internal force", LimitGroup.STANCE)
     grasp = passed if payload.grasp is Grasp.POINT else 0.0
     yield Residual("load.grasp", grasp, "N m", "the moment of a hand that passes none")
@@ -170,7 +184,7 @@ def residuals(system: MeasuredSystem) -> Iterator[Residual]:
     whole = -float(weight[2] + outside[2])
     if scene.robot_share is not None:
         yield Residual("load.share", abs(carried - scene.robot_share * whole), "N", "the robot's share")
-    elif payload.grasp is Grasp.RIGID:
+    elif payload.grasp is Grasp.RIGID and scene.robots and scene.people:
         yield Residual("load.share", max(0.0, -carried, carried - whole), "N", "the robot's share")
 
 

@@ -25,31 +25,33 @@ import numpy as np
 
 from evodesign.body.placement import Placement
 from evodesign.human.measured_posture import FEATURES, MARK, MEAN_PERSON, SIDES, SPINE, Gaussians
-from evodesign.mechanics.scene import Scene
+from evodesign.mechanics.scene import Agent, Scene
 from evodesign.posture.terms.base import Body, BodyTerm, Expression
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 
-DRAWN = "drawn_person"
-"""Name of the parameter that holds the standard normal numbers of a person."""
-
 
 def any_person(scene: Scene) -> tuple[Scene, Mapping[str, Expression]]:
-    """A scene with any of the people of its person's distribution, and the parameter that says which.
+    """A scene with any of the people of its people's distributions, and the parameters that say which.
 
-    There is none where no measured posture draws the person.
+    A parameter holds the standard normal numbers of a person; one whom no measured posture draws has none.
     """
-    given = scene.human.measured
-    if given is None:
-        return scene, {}
-    drawn: Any = ca.SX.sym(DRAWN, len(FEATURES))
-    human = replace(scene.human, measured=replace(given, drawn=drawn))
-    return scene.with_agents(human), {DRAWN: drawn}
+    people, parameters = list[Agent](), dict[str, Expression]()
+    for person in scene.people:
+        if person.measured is not None:
+            drawn: Any = ca.SX.sym(_parameter(person), len(FEATURES))
+            parameters[_parameter(person)] = drawn
+            people.append(replace(person, measured=replace(person.measured, drawn=drawn)))
+    return scene.with_agents(*people), parameters
 
 
 def person_parameters(scene: Scene) -> Mapping[str, tuple[float, ...]]:
-    """The values of these parameters of a scene's person."""
-    return {} if scene.human.measured is None else {DRAWN: scene.human.measured.drawn}
+    """The values of these parameters of a scene's people."""
+    return {_parameter(each): each.measured.drawn for each in scene.people if each.measured is not None}
+
+
+def _parameter(person: Agent) -> str:
+    return f"drawn_{person.name}"
 
 
 def chords(tree: Tree, stature: float) -> tuple[dict[str, float], dict[str, float]]:

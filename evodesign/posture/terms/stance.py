@@ -51,7 +51,9 @@ def _row(
 
 def _nearest(body: Body | MeasuredBody) -> float:
     """Largest x of a trunk frame, in the agent's frame [m]."""
-    return float(-body.scene.payload.size[0] / 2.0 - body.scene.stance_of(body.agent).trunk_clearance)
+    return float(
+        -body.scene.payload.faced(body.agent)[0] / 2.0 - body.scene.stance_of(body.agent).trunk_clearance
+    )
 
 
 def residuals(body: MeasuredBody) -> Iterator[Residual]:

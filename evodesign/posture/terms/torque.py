@@ -20,7 +20,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.mechanics.balance import AppliedWrench, cut
-from evodesign.mechanics.disturbance import PushedAt
 from evodesign.mechanics.floating_base import ROOT, BodyState
 from evodesign.mechanics.scene import Agent, Scene
 from evodesign.posture.results import AgentPosture
@@ -119,7 +118,7 @@ def _contacts(body: Body) -> Iterator[AppliedWrench]:
 
 def _push(body: Body) -> Iterator[AppliedWrench]:
     """A disturbance's push on the agent's trunk, in its own frame."""
-    push = body.disturbance.push_on(PushedAt(body.agent.name))
+    push = body.disturbance.push_on(body.agent.name)
     if any(push):
         force = turned_to_world(body.agent, vector(push))  # by 0 or 180 degrees, so there as back
         frame = body.agent.pushed_frame
@@ -149,7 +148,7 @@ def asked(agent: Agent, posture: AgentPosture, state: BodyState, push: Sequence[
 def residuals(body: MeasuredBody) -> Iterator[Residual]:
     """What base and joints miss of their balance; and torques beyond their limits."""
     agent, posture = body.agent, body.posture
-    rows = asked(agent, posture, body.state, body.disturbance.push_on(PushedAt(agent.name)))
+    rows = asked(agent, posture, body.state, body.disturbance.push_on(agent.name))
     base, joints = np.abs(rows[:ROOT]), rows[ROOT:]
     wrong = float(np.abs(joints - [posture.torques[name] for name in agent.joints]).max())
     yield Residual("torque", wrong, "N m", "joint torques")
