@@ -8,6 +8,7 @@ links and the load but for those that hold it, and all links of robot and person
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import combinations, product
 from typing import Any
 
 from evodesign.body.placement import Placement
@@ -18,13 +19,14 @@ from evodesign.collision.rules import LOAD
 from evodesign.collision.shapes import box_solid
 from evodesign.errors import RunError, on_one_line
 from evodesign.evaluation.evaluate import detail_of
-from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
+from evodesign.mechanics.scene import HUMAN, Agent, Role, Scene
 from evodesign.quantities.design_result import DesignResult
 from evodesign.records import AgentDetail, Case, CaseDetail
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 
-WHO: Mapping[str, str] = {ROBOT: "robot", HUMAN: "person"}
+WHO: Mapping[str, str] = {HUMAN: "person"}
+"""What agents are called where it is not their name."""
 
 Pairs = tuple[tuple[str, str], ...]
 
@@ -43,7 +45,9 @@ class Clearances:
         self._scenes = {scene.pair: scene for scene in scenes}
         self._own: dict[int, Pairs] = {}
         self._places: dict[tuple[str, str], Places] = {}
-        self._people = {scene.human.label: SolidBodies.of_tree(scene.human.tree) for scene in scenes}
+        self._people = {
+            id(person.tree): SolidBodies.of_tree(person.tree) for scene in scenes for person in scene.people
+        }
 
     def of(self, robot: Tree, cases: Sequence[CaseDetail]) -> list[BodyDistance]:
         """The nearest two bodies in each case, undisturbed; in a lift at some of its moments.
@@ -63,24 +67,24 @@ class Clearances:
         if scene is None:
             name = on_one_line(case.case.name)
             raise RunError(f"the logged postures of case '{name}' are not those of the run's problem")
-        person = self._people[scene.human.label]
+        trees = {agent.name: robot if agent.role is Role.ROBOT else agent.tree for agent in scene.agents}
+        own = {name: self._people.get(id(tree), solids) for name, tree in trees.items()}
         load = SolidBodies((LOAD,), (box_solid(Box(*scene.payload.size)),))
         middle = Placement(translation=(0.0, 0.0, case.height_m))
-        placed = _placed(scene.robot, robot, solids, case.agents[ROBOT]).beside(
-            _placed(scene.human, scene.human.tree, person, case.agents[HUMAN]),
-            load.placed({LOAD: middle}),
-        )
+        first, *others = [
+            _placed(agent, trees[agent.name], own[agent.name], case.agents[agent.name])
+            for agent in scene.agents
+        ]
+        placed = first.beside(*others, load.placed({LOAD: middle}))
         if scene.pair not in self._places:
-            self._places[scene.pair] = places_of(placed.names, self._collision_pairs(scene, solids, person))
+            self._places[scene.pair] = places_of(placed.names, self._collision_pairs(scene, own))
         return placed.nearest(self._places[scene.pair])
 
-    def _collision_pairs(
-        self, scene: Scene, robot: SolidBodies, person: SolidBodies
-    ) -> Iterator[tuple[str, str]]:
-        """All pairs of a scene."""
-        links = {ROBOT: dict.fromkeys(robot.names), HUMAN: dict.fromkeys(person.names)}
-        for one in links[ROBOT]:
-            yield from ((_name(ROBOT, one), _name(HUMAN, other)) for other in links[HUMAN])
+    def _collision_pairs(self, scene: Scene, own: Mapping[str, SolidBodies]) -> Iterator[tuple[str, str]]:
+        """All pairs of a scene, of the bodies of agents by name."""
+        links = {name: dict.fromkeys(solids.names) for name, solids in own.items()}
+        for one, other in combinations(links, 2):
+            yield from ((_name(one, a), _name(other, b)) for a, b in product(links[one], links[other]))
         for agent in scene.agents:
             for link, other in self._of_agent(agent):
                 if other == LOAD:
@@ -128,4 +132,4 @@ def _placed(agent: Agent, tree: Tree, solids: SolidBodies, posture: AgentDetail)
 
 
 def _name(agent: str, link: str) -> str:
-    return f"{WHO[agent]} {link}"
+    return f"{WHO.get(agent, agent)} {link}"

@@ -17,6 +17,7 @@ from evodesign.collision.zero_posture import built_in_slack
 from evodesign.evaluation.inner import InnerProblems
 from evodesign.evaluation.sizing import sized_result, usual_values
 from evodesign.mechanics.added_mass import AddedMasses
+from evodesign.mechanics.scene import Scene
 from evodesign.mechanics.stance_case import StanceTorques
 from evodesign.nlp.program import Start
 from evodesign.posture.allocation import shared_scene
@@ -52,7 +53,10 @@ class DesignSolver:
         self.family = space.family(robot.tree)
         self.tree = self.family.tree
         self.robot = AgentModel.of(robot, self.tree)
-        self.people = {s.human.label: AgentModel.of(s.human, s.human.tree) for s in problem.scenes}
+        self.people = {
+            scene.pair[0]: tuple(AgentModel.of(person, person.tree) for person in scene.people)
+            for scene in problem.scenes
+        }
 
     def solve(self, values: Sequence[float]) -> DesignResult:
         """Reach and postures of a design given as one number per parameter."""
@@ -166,7 +170,7 @@ class _OneDesign:
         tree = problem.space.with_actuators(self._tree, values)
         robot = self._robot.driven(tree) if problem.space.driven else self._robot
         reach = self._reach(values)
-        check = Checker(problem.scene, robot, solver.people[problem.scene.human.label])
+        check = Checker(problem.scene, robot, *solver.people[problem.scene.pair[0]])
         return self._of_cases(values, reach, self._cases(values, reach, check, before))
 
     def _of_cases(self, values: Sequence[float], reach: Reach, cases: Cases) -> DesignResult:
@@ -232,7 +236,7 @@ class _OneDesign:
         failed = [solution for solution in found if not solution.solved]
         if failed:
             return CaseSolution(case, failed[0].status, NOT_TRIED)
-        scene, human = self._problem.scene_of(case), self._solver.people[case.person]
+        scene, people = self._problem.scene_of(case), self._solver.people[case.person]
         held = [*found]
         for hold in (Hold(height_m=height) for height in lift.heights):
             end = scene.case(hold)
@@ -243,18 +247,18 @@ class _OneDesign:
             for height in lift.heights
         ]
         motions, starts = self._solver.inner.lifts[case.pair], self._solver.known.lift_starts(case.pair, lift)
-        solution = motions.solve(values, lift, ends, check.robot, human, known=starts, slowly=False)
+        solution = motions.solve(values, lift, ends, check.robot, *people, known=starts, slowly=False)
         return solution.in_case(case)
 
     def _neighbour(self, before: Sequence[CaseSolution], case: Case) -> Neighbour | None:
         """The most similar case of the same task that was solved before: of the same load if there is one."""
-        joints = self._problem.scene_of(case).human.joints
+        joints = _joints(self._problem.scene_of(case))
         similar = [
             solution
             for solution in before
             if solution.solved
             and solution.case.task == case.task
-            and self._problem.scene_of(solution.case).human.joints == joints
+            and _joints(self._problem.scene_of(solution.case)) == joints
         ]
         same_load = [solution for solution in similar if solution.case.payload == case.payload]
         return Neighbour((same_load or similar)[-1]) if similar else None
@@ -325,13 +329,13 @@ class _OneDesign:
 
     def _elsewhere(self, found: Sequence[CaseSolution], case: Case) -> list[Neighbour]:
         """Solutions of other tasks, those at the nearest heights first."""
-        joints = self._problem.scene_of(case).human.joints
+        joints = _joints(self._problem.scene_of(case))
         others = [
             each
             for each in found
             if each.solved
             and each.case.task != case.task
-            and self._problem.scene_of(each.case).human.joints == joints
+            and _joints(self._problem.scene_of(each.case)) == joints
         ]
         others.sort(key=lambda each: abs(each.case.task.heights[0] - case.task.heights[0]))
         return [Neighbour(each) for each in others]
@@ -339,7 +343,12 @@ class _OneDesign:
     def _checker(self, values: Sequence[float], case: Case, check: Checker) -> Checker:
         """The check, in a case."""
         scene = shared_scene(self._problem.scene_of(case), self._problem.space, values)
-        return check.elsewhere(scene, self._solver.people[case.person])
+        return check.elsewhere(scene, *self._solver.people[case.person])
+
+
+def _joints(scene: Scene) -> tuple[tuple[str, ...], ...]:
+    """Those that move, of each person."""
+    return tuple(person.joints for person in scene.people)
 
 
 def _beyond(case: Case, reach: Reach) -> CaseSolution | None:

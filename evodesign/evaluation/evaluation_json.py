@@ -56,7 +56,6 @@ from evodesign.collision.clearance import BodyDistance
 from evodesign.evaluation.bill import bill_of_materials
 from evodesign.evaluation.clearance import distance_json, solved_distances
 from evodesign.evaluation.sensitivities import ObjectiveSensitivity
-from evodesign.mechanics.scene import HUMAN
 from evodesign.posture.results import AgentPosture, CaseSolution, Instant
 from evodesign.problem.build import DesignProblem
 from evodesign.quantities.design_result import DesignResult
@@ -147,8 +146,8 @@ def _shown(
         shown["residuals"] = dict(solution.residuals)
         if gap is not None:
             shown["clearance"] = distance_json(gap)
-        person, posture = result.scene_of(solution.case).human, detail.hardest.agents[HUMAN]
-        shown["ergonomics"] = ergonomics_json(ergonomics(person, posture))
+        for person in result.scene_of(solution.case).people:
+            shown["ergonomics"] = ergonomics_json(ergonomics(person, detail.hardest.agents[person.name]))
     return shown
 
 

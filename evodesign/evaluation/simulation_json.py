@@ -22,7 +22,7 @@ def _one(simulation: SimulatedCase) -> dict[str, Any]:
     outcome = simulation.outcome
     return {
         "case": simulation.name,
-        "person": simulation.scene.human.label,
+        "person": simulation.scene.pair[0],
         "payload": simulation.scene.payload.label,
         "seconds": outcome.seconds,
         "stands": outcome.stands,

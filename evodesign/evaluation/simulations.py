@@ -9,7 +9,7 @@ import msgspec
 
 from evodesign.errors import InputError
 from evodesign.evaluation.logged_posture import logged_posture
-from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
+from evodesign.mechanics.scene import Role, Scene, scene_of
 from evodesign.motion.solution import LiftSolution
 from evodesign.records import CaseDetail
 from evodesign.simulation.feedback import Feedback
@@ -133,6 +133,6 @@ def _lift_name(lift: Lift) -> str:
 
 
 def _followed(scene: Scene, name: str, robot: Tree, plan: Plan, feedback: Feedback) -> SimulatedCase:
-    trees = {ROBOT: robot, HUMAN: scene.human.tree}
+    trees = {each.name: robot if each.role is Role.ROBOT else each.tree for each in scene.agents}
     rollout = rolled_out(scene.undisturbed, trees, plan, feedback)
     return SimulatedCase(scene, name, trees, plan, rollout, outcome_of(plan, rollout))

@@ -203,7 +203,7 @@ def _holds(problem: DesignProblem) -> str:
     bare = replace(robot, tree=without_frames(robot.tree, frames), collisions=None)
     alone = replace(
         problem,
-        scenes=(scene.with_agents(bare, replace(scene.human, collisions=None)),),
+        scenes=(scene.with_agents(*(replace(each, collisions=None) for each in scene.people), bare),),
         options=options,
         start_portfolio=False,
         whole_reach=True,

@@ -35,7 +35,8 @@ class DesignCheckers:
 
     def __init__(self, scene: Scene, space: DesignSpace) -> None:
         self._scene, self._family = scene, space.family(scene.robot.tree)
-        self._robot, self._human = (AgentModel.of(agent, agent.tree) for agent in scene.agents)
+        self._robot = AgentModel.of(scene.robot, scene.robot.tree)
+        self._people = [AgentModel.of(person, person.tree) for person in scene.people]
         self._of = lru_cache(AT_HAND)(self._made)
 
     def of(self, design: Sequence[float]) -> Checker:
@@ -44,4 +45,4 @@ class DesignCheckers:
 
     def _made(self, design: tuple[float, ...]) -> Checker:
         robot = self._robot.resized(self._family.resized(design))
-        return Checker(self._scene, robot, self._human)
+        return Checker(self._scene, robot, *self._people)

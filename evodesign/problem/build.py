@@ -8,7 +8,7 @@ import msgspec
 
 from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError, nearest_name
-from evodesign.mechanics.scene import Scene, scene_of
+from evodesign.mechanics.scene import Agent, Scene, scene_of
 from evodesign.mechanics.stance_case import StanceCase
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.solver import available
@@ -20,6 +20,7 @@ from evodesign.problem.agents import (
     human_agents,
     robot_agent,
 )
+from evodesign.problem.alone import refuse_what_needs_people
 from evodesign.problem.collisions import with_collisions
 from evodesign.problem.constraints import constraints_of, refuse_constraints, with_bodies_apart
 from evodesign.problem.descriptors import LOWEST_REACH, search_descriptors
@@ -39,7 +40,7 @@ from evodesign.problem.from_tables import (
     worker_limits,
 )
 from evodesign.problem.joint_settings import joint_settings, joint_start
-from evodesign.problem.loads import payloads, refuse_stiff_arms, scene_disturbances
+from evodesign.problem.loads import held_alone, payloads, refuse_stiff_arms, scene_disturbances
 from evodesign.problem.samples import samples_of
 from evodesign.problem.source import decode_toml
 from evodesign.problem.stance_limits import stance_of
@@ -68,7 +69,7 @@ BELOW = 0.1
 
 @dataclass(frozen=True, slots=True)
 class DesignProblem:
-    """A robot, people, loads, tasks, and the hardware that may change.
+    """A robot, people if there are any, loads, tasks, and the hardware that may change.
 
     Args:
         name: of the problem.
@@ -125,7 +126,7 @@ class DesignProblem:
     @property
     def person_reaches(self) -> bool:
         """Whether the people's own reach counts: it is asked for, or there are several of them."""
-        several = len({scene.human.label for scene in self.scenes}) > 1
+        several = len({scene.pair[0] for scene in self.scenes}) > 1
         names = {each.name for each in self.objectives} | {each.name for each in self.constraints}
         return several or SHARED_REACH in names
 
@@ -241,19 +242,22 @@ def build_problem(source: ProblemSource) -> DesignProblem:
     tables = decode_toml(source.text, source.path, ProblemFile)
     robot, ground, stance = robot_agent(tables, source), ground_of(tables), stance_of(tables, source)
     refuse_unlimited(tables, source, robot)
+    refuse_what_needs_people(tables, source)
     people, loads = human_agents(tables, source), payloads(tables, source)
+    if not people:
+        loads = tuple(held_alone(load, robot) for load in loads)
     refuse_stiff_arms(source, loads, (robot, *people))
     disturbances = scene_disturbances(tables, source, (robot, *people), loads)
-    scenes = tuple(
-        Scene((robot, human), load, ground, stance, disturbances) for human in people for load in loads
-    )
+    crews: list[tuple[Agent, ...]] = [(robot, human) for human in people]
+    crews = crews or [(robot,)]
+    scenes = tuple(Scene(crew, load, ground, stance, disturbances) for crew in crews for load in loads)
     check_allocations(tables, source)
     scenes = tuple(replace(scene, robot_share=robot_share(tables, source, scene)) for scene in scenes)
     space = space_of(tables, source, robot.tree)
     resolved = resolved_symmetry(tables, source, scenes, space)
     scenes = with_collisions(tables, source, resolved.scenes, space)
     robot = scenes[0].robot
-    people = tuple(scene.human for scene in scenes[:: len(loads)])
+    people = tuple(person for scene in scenes[:: len(loads)] for person in scene.people)
     start: dict[str, Genome] = {}
     if tables.search.start is not None:
         name = tables.search.start

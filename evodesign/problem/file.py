@@ -321,15 +321,18 @@ class SolverTable(Table, frozen=True):
 
 
 class ProblemFile(Table, frozen=True):
-    """A whole problem file; `description` says in a sentence what it is about."""
+    """A whole problem file; `description` says in a sentence what it is about.
+
+    Without `human` the robot holds the load alone.
+    """
 
     name: Name
     robot: RobotTable
-    human: HumanTable | Annotated[tuple[HumanTable, ...], Meta(min_length=1)]
     payload: PayloadTable | Annotated[tuple[PayloadTable, ...], Meta(min_length=1)]
     task: TaskTable
     design: DesignTable
     objectives: ObjectivesTable
+    human: HumanTable | Annotated[tuple[HumanTable, ...], Meta(min_length=1)] | None = None
     constraints: dict[str, BoundsTable] = msgspec.field(default_factory=dict)
     material: tuple[MaterialTable, ...] = ()
     actuator: tuple[CatalogueRow, ...] = ()
@@ -345,8 +348,8 @@ class ProblemFile(Table, frozen=True):
 
     @property
     def people(self) -> dict[str, HumanTable]:
-        """The tables of people by their keys, for messages."""
-        return _listed("human", self.human)
+        """The tables of people by their keys, for messages; none where the robot holds the load alone."""
+        return {} if self.human is None else _listed("human", self.human)
 
     @property
     def loads(self) -> dict[str, PayloadTable]:

@@ -146,6 +146,7 @@ def objectives_of(
     if not chosen:
         raise InputError(source.path, "objectives", "at least one objective", "none")
     names = [name for _, _, name in chosen]
+    people = [person for scene in scenes for person in scene.people]
     objectives = []
     for sense, position, name in chosen:
         key = f"objectives.{sense}[{position}]"
@@ -157,6 +158,6 @@ def objectives_of(
             raise InputError(source.path, key, wanted, f"'{name}'{nearest_name(meant, known)}")
         if names.count(name) > 1:
             raise InputError(source.path, key, "each objective once", f"'{name}' twice")
-        refuse_unanswered_quantity(key, name, tables, source, [scene.human for scene in scenes])
+        refuse_unanswered_quantity(key, name, tables, source, people)
         objectives.append(Objective(name=name, sense=sense, unit=kind.unit))
     return tuple(objectives)

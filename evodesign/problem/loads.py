@@ -13,6 +13,7 @@ from evodesign.mechanics.scene import (
     HUMAN,
     ROBOT,
     SIDES,
+    TO_THE_LEFT,
     WRIST_MOMENT,
     Agent,
     Grasp,
@@ -66,6 +67,18 @@ def _payload(key: str, table: PayloadTable, source: ProblemSource) -> Payload:
         grasp_direction=table.grasp_direction,
         grasp_cone=_grasp_cone(key, table, source),
     )
+
+
+def held_alone(load: Payload, agent: Agent) -> Payload:
+    """A load that somebody holds alone: by the middles of its sides, unless the file says where.
+
+    Hands in points on its near edge would not balance it.
+    """
+    width = load.size[1]
+    places = {
+        (agent.name, hand.name): (0.0, width / 2.0 * TO_THE_LEFT[hand.side], 0.0) for hand in agent.hands
+    }
+    return replace(load, grasp_points={**places, **load.grasp_points})
 
 
 def _grasp_cone(key: str, table: PayloadTable, source: ProblemSource) -> float:

@@ -71,7 +71,7 @@ def _collisions(problem: DesignProblem) -> dict[str, Any]:
         agent.label or agent.name: [
             {"bodies": list(pair), "reason": reason} for pair, reason in may_overlap(agent).items()
         ]
-        for agent in (problem.scene.robot, *{s.human.label: s.human for s in problem.scenes}.values())
+        for agent in (problem.scene.robot, *_by_label(problem).values())
     }
     margin = next(iter(rules.values())).margin
     return {"collisions": {"margin_m": margin, "pairs": pairs, "exempt": exempt}}
@@ -94,15 +94,19 @@ def _load(load: Payload) -> dict[str, Any]:
 
 def _people(problem: DesignProblem) -> list[dict[str, Any]]:
     """The people in short; of several, also who each is, with sex and stature unless a URDF describes it."""
-    people = {scene.human.label: scene.human for scene in problem.scenes}
-    if len(people) == 1:
-        return [_agent(problem.scene.human)]
+    people = _by_label(problem)
+    if len(people) <= 1:
+        return [_agent(person) for person in people.values()]
     tables = decode_toml(problem.source.text, problem.source.path, ProblemFile)
     given = [table for _, table in everyone(tables, problem.source)]
     return [
         {**_agent(person), "who": label, "sex": table.sex, "stature_m": table.stature_m}
         for (label, person), table in zip(people.items(), given, strict=True)
     ]
+
+
+def _by_label(problem: DesignProblem) -> dict[str, Agent]:
+    return {person.label: person for scene in problem.scenes for person in scene.people}
 
 
 def _agent(agent: Agent) -> dict[str, Any]:

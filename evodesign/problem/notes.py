@@ -32,7 +32,7 @@ def notes(problem: DesignProblem) -> tuple[str, ...]:
     T-pose (x forward, y to the left, z up; docs/person.md), and whether or not the problem moves them. Limits
     do not depend on stature, mass or sex, so any person serves. Then heights at which nobody was measured.
     """
-    people = [scene.human.tree for scene in problem.scenes]
+    people = [person.tree for scene in problem.scenes for person in scene.people]
     anatomy = human_tree(Person(1.75, 75.0, Sex.MALE)).joint_by_name
     found = (
         _turned(human.name, joint, anatomy[joint.name])
@@ -43,7 +43,7 @@ def notes(problem: DesignProblem) -> tuple[str, ...]:
     trees = (problem.scene.robot.tree, *people)
     read = (f"{tree.name}: {sentence}" for tree in trees for sentence in tree.notes)
     wrong = (sentence for sentence in found if sentence)
-    agents = (problem.scene.robot, *(scene.human for scene in problem.scenes))
+    agents = (problem.scene.robot, *(person for scene in problem.scenes for person in scene.people))
     still = (f"{agent.tree.name}: {sentence}" for agent in agents for sentence in _still(agent))
     left, assumed = left_out(problem.source), assumed_heights(problem)
     return tuple(dict.fromkeys((*read, *still, *problem.symmetry_notes, *wrong, *assumed, *left)))
@@ -52,8 +52,8 @@ def notes(problem: DesignProblem) -> tuple[str, ...]:
 def assumed_heights(problem: DesignProblem) -> Iterator[str]:
     """A sentence for each person and hold whose measured posture rests on an assumption."""
     low, high = unmeasured_heights()
-    for scene in problem.scenes:
-        person = scene.human
+    everyone = [(scene, person) for scene in problem.scenes for person in scene.people]
+    for scene, person in everyone:
         if person.measured is None:
             continue
         palm, stature = scene.payload.grasp_point(person, person.hands[0])[2], person.measured.stature

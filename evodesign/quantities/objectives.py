@@ -252,6 +252,19 @@ MOTOR_RATIO = 160.0
 HUMAN_EFFORT = "human_effort"
 """The hardest joint's share of the person's strength."""
 
+NEED_PEOPLE = (
+    "human_torque",
+    "human_load_torque",
+    HUMAN_EFFORT,
+    SPINE,
+    BACK,
+    ENDURANCE,
+    "shared_reach_height",
+    "paper_cost",
+    "paper2023_cost",
+)
+"""How the names of quantities end that are of people, or of robot and people together."""
+
 NEED_STRENGTHS = (HUMAN_EFFORT, ENDURANCE)
 """How the names of quantities end that need people of known strength."""
 

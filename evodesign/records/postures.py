@@ -225,7 +225,10 @@ class CaseDetail(Record, frozen=True, omit_defaults=True):
     @property
     def hardest(self) -> CaseDetail:
         """The moment at which the person's torques [N m] are largest; the only one of a load held still."""
-        return max(self.moments, key=lambda moment: moment.agents["human"].torque_norm_n_m)
+        moments = self.moments
+        if len(moments) == 1:
+            return moments[0]
+        return max(moments, key=lambda moment: moment.agents["human"].torque_norm_n_m)
 
     def thinned(self, most: int) -> CaseDetail:
         """The same with so many instants at most: both ends, and what lies evenly between."""

@@ -57,7 +57,7 @@ class RebuiltProblem:
         source = self._header.problem
         tables = decode_toml(source.text, source.path, ProblemFile)
         if any(table.urdf is not None for _, table in everyone(tables, source)):  # may be averaged
-            return {scene.human.label: scene.human for scene in self.problem.scenes}
+            return {person.label: person for scene in self.problem.scenes for person in scene.people}
         return {person.label: person for person in human_agents(tables, source)}
 
 
@@ -119,6 +119,8 @@ class OpenedDesign:
         from evodesign.quantities.ergonomics import ergonomics  # CasADi takes its time to load
 
         people = self.rebuilt.people
+        if not people:
+            return ()
         stranger = next((each.case.person for each in self.cases if each.case.person not in people), None)
         if stranger is not None:
             name = on_one_line(stranger)

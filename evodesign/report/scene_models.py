@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from evodesign.body.placement import Placement, Vector, rotate
 from evodesign.body.shape import Box, Shape
 from evodesign.errors import RunError, on_one_line
-from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Payload, Scene
+from evodesign.mechanics.scene import ROBOT, Agent, Payload, Role, Scene
 from evodesign.records import AgentDetail, CaseDetail, Task
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Link, Mesh, Tree
@@ -47,13 +47,18 @@ class SceneModels:
     @classmethod
     def of(cls, scene: Scene, robot_tree: Tree) -> SceneModels:
         """The models of a scene with the robot of a design."""
-        trees = {ROBOT: robot_tree, HUMAN: scene.human.tree}
-        return cls((scene.robot, scene.human), trees, scene.payload)
+        trees = {each.name: robot_tree if each.role is Role.ROBOT else each.tree for each in scene.agents}
+        return cls(scene.agents, trees, scene.payload)
 
     @property
     def pair(self) -> tuple[str, str]:
-        """Names of person and load, each empty where there is one."""
-        return self.agent(HUMAN).label, self.payload.label
+        """Names of people and load, each empty where there is one."""
+        return " and ".join(each.label for each in self.people if each.label), self.payload.label
+
+    @property
+    def people(self) -> tuple[Agent, ...]:
+        """The agents that are people."""
+        return tuple(agent for agent in self.agents if agent.role is Role.PERSON)
 
     @property
     def label(self) -> str:
@@ -208,7 +213,9 @@ class SceneSet:
     def people(self) -> tuple[tuple[Agent, Tree], ...]:
         """Each person once, with the tree of numbers, in the problem's order."""
         found = {
-            models.agent(HUMAN).label: (models.agent(HUMAN), models.trees[HUMAN]) for models in self.models
+            person.label: (person, models.trees[person.name])
+            for models in self.models
+            for person in models.people
         }
         return tuple(found.values())
 

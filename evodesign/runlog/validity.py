@@ -28,8 +28,6 @@ LARGEST_NUMBER: Final = 10**9
 LARGEST_POPULATION: Final = 10**5
 """More designs than any search asks for at once."""
 
-AGENTS: Final = frozenset(("robot", "human"))
-
 
 def header_fault(header: RunHeader) -> str:
     """What is wrong with a header by itself; empty if nothing is."""
@@ -122,7 +120,7 @@ def _detail(detail: Detail) -> str:
             if len(times) < 2 or times != sorted(set(times)):
                 return "a lift has not several postures, one after the other"
         elif len(case.instants) != 1:
-            return "a case has not one posture of robot and person"
+            return "a case has not one posture of everyone"
         wrong = next((wrong for instant in case.instants if (wrong := _instant(instant))), "")
         if wrong:
             return wrong
@@ -130,10 +128,10 @@ def _detail(detail: Detail) -> str:
 
 
 def _instant(instant: InstantDetail) -> str:
-    if instant.agents.keys() != AGENTS:
-        return "a case has not one posture of robot and person"
-    if any(agents.keys() != AGENTS for agents in instant.disturbed.values()):
-        return "a disturbance has not robot and person"
+    if not instant.agents:
+        return "a case has no posture of anybody"
+    if any(agents.keys() != instant.agents.keys() for agents in instant.disturbed.values()):
+        return "a disturbance has not the agents of its posture"
     if any(
         each.wrenches.keys() != instant.agents[name].wrenches.keys()
         for agents in instant.disturbed.values()

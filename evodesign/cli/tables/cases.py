@@ -43,7 +43,7 @@ def cases_table(assessment: Assessment, title: str) -> FittedTable:
             _status(outcome),
         )
         for name, norms in outcome.disturbed.items():
-            own = [rounded(norms[agent]) for agent in (ROBOT, HUMAN)]
+            own = [rounded(norms.get(agent)) for agent in (ROBOT, HUMAN)]
             blank = ["" for _ in iterations]
             table.add_row(*("" for _ in labels), "", *own, *blank, "", markup(f"under '{name}'"))
         if following is not None and outcome.case.pair != following.case.pair:
@@ -94,8 +94,7 @@ def _norms(outcome: CaseOutcome, agent: str) -> Iterator[float]:
     undisturbed = outcome.robot_torque_norm if agent == ROBOT else outcome.human_torque_norm
     if undisturbed is not None:
         yield undisturbed
-    for norms in outcome.disturbed.values():
-        yield norms[agent]
+    yield from (norms[agent] for norms in outcome.disturbed.values() if agent in norms)
 
 
 def _mean_and_worst(norms: Sequence[float]) -> Iterator[float | None]:

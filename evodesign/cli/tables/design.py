@@ -17,7 +17,6 @@ from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.evaluation.bill import bill_of_materials
 from evodesign.evaluation.evaluate import detail_of
 from evodesign.evaluation.sensitivities import ObjectiveSensitivity
-from evodesign.mechanics.scene import HUMAN
 from evodesign.problem.build import DesignProblem
 from evodesign.quantities.design_result import DesignResult
 from evodesign.quantities.ergonomics import ergonomics
@@ -48,7 +47,7 @@ def design_tables(
     yield from _assessment_tables(problem, name, result, assessment)
     if bill := bill_of_materials(problem, result.tree, solved):
         yield actuators_table(bill, mass_title(bill))
-    if solved:
+    if solved and result.scenes[0].people:
         yield from _people_tables(result)
     if any(each.limits for each in solved):
         yield limits_table(solved, TITLE)
@@ -83,8 +82,9 @@ def _people_tables(result: DesignResult) -> tuple[FittedTable, FittedTable]:
     """What the solved postures of a design ask of the people."""
     solved = [solution for solution in result.cases if solution.solved]
     asked = [
-        (one.case, ergonomics(result.scene_of(one.case).human, detail_of(one).hardest.agents[HUMAN]))
+        (one.case, ergonomics(person, detail_of(one).hardest.agents[person.name]))
         for one in solved
+        for person in result.scene_of(one.case).people
     ]
     return people_table(asked, titled=True), effort_table(asked, titled_too=True)
 

@@ -104,5 +104,5 @@ def key_of(setting: PrecomputeSetting, piece: Piece, met: dict[int, Met] | None 
 
 def _parted(setting: PrecomputeSetting, piece: Piece) -> bool:
     """Whether a piece follows from what comes near whom, which is found where bodies are kept apart."""
-    apart = scene_of(setting.scenes, piece.pair).human.collisions is not None
+    apart = scene_of(setting.scenes, piece.pair).robot.collisions is not None
     return apart and piece.subject is not Subject.MEETINGS

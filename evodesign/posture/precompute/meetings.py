@@ -13,7 +13,7 @@ from itertools import islice, product
 
 from evodesign.collision.rules import BodyPair, CollisionRules
 from evodesign.design.spread import spread_designs
-from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Scene
+from evodesign.mechanics.scene import ROBOT, Agent, Scene
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.check import AgentModel, Checker, near_bodies, own_pairs
 from evodesign.posture.design_checkers import can_be_built
@@ -73,11 +73,11 @@ def found_meetings(
     finder = _Finder(setting, symmetric, part, parts)
     scene = finder.scene
     met = finder.held(tasks) | (finder.at_extremes() if extreme else set())
-    found = {name: {pair for of, pair in met if of == name} for name in (ROBOT, HUMAN, REACH)}
+    forms = {form.agent.name: form for form in finder.forms}
+    agents = {REACH: scene.robot, **{agent.name: agent for agent in scene.agents}}
     return {
-        ROBOT: _in_order(scene.robot, found[ROBOT], finder.forms[0]),
-        REACH: _in_order(scene.robot, found[REACH], finder.forms[0]),
-        HUMAN: _in_order(scene.human, found[HUMAN], finder.forms[1]),
+        name: _in_order(agent, {pair for of, pair in met if of == name}, forms[agent.name])
+        for name, agent in agents.items()
     }
 
 
@@ -94,7 +94,8 @@ class _Finder:
         self.scene, self._free = scene, free
         self.forms = forms_of(free, symmetric=symmetric)
         self._setting, self._symmetric = replace(setting, scene=free, options=options), symmetric
-        self._robot, self._human = (AgentModel.of(agent, agent.tree) for agent in scene.agents)
+        self._robot = AgentModel.of(scene.robot, scene.robot.tree)
+        self._people = [AgentModel.of(person, person.tree) for person in scene.people]
         space = setting.space
         built = can_be_built(scene.robot, space)
 
@@ -112,11 +113,11 @@ class _Finder:
         """What is near in postures of the tasks."""
         name, scene, space = "symmetric" if self._symmetric else "whole", self._free, self._setting.space
         problem = JointPostures(name, self.forms, self._setting, SolverCache())
-        human = AgentModel.of(scene.human, scene.human.tree)
+        people = [AgentModel.of(person, person.tree) for person in scene.people]
         found: set[_Met] = set()
         for values in self._designs:
             robot = AgentModel.of(scene.robot, space.resized(scene.robot.tree, values))
-            checker = Checker(scene, robot, human)
+            checker = Checker(scene, robot, *people)
             for task in tasks:
                 best = problem.solve(values, task, (), checker).best
                 for instant, height in zip(best.instants if best else (), task.heights, strict=False):
@@ -138,7 +139,7 @@ class _Finder:
     def _near(self, values: tuple[float, ...], postures: Mapping[str, AgentPosture], height: float) -> _Near:
         """The pairs that are near, with their distances [m]."""
         robot = self._robot.resized(self._setting.space.resized(self.scene.robot.tree, values))
-        gaps = near_bodies((robot, self._human), postures, self.scene.payload.size, height, NEAR)
+        gaps = near_bodies((robot, *self._people), postures, self.scene.payload.size, height, NEAR)
         return {met: gap.distance for gap in gaps for met in own_pairs(gap)}
 
 

@@ -16,12 +16,12 @@ import numpy as np
 
 from evodesign.collision.rules import BodyPair
 from evodesign.design.spread import spread_designs
-from evodesign.mechanics.scene import HUMAN, ROBOT, Scene, scene_of
+from evodesign.mechanics.scene import HUMAN, Scene, scene_of
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
 from evodesign.posture.postures import PostureProblem
-from evodesign.posture.precompute.meetings import REACH, found_meetings, with_meetings
+from evodesign.posture.precompute.meetings import found_meetings, with_meetings
 from evodesign.posture.precompute.plan import (
     Piece,
     PrecomputeSetting,
@@ -105,7 +105,7 @@ def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed 
 def _with_found(known: Precomputed, piece: Piece, found: Mapping[str, Sequence[BodyPair]]) -> Precomputed:
     """Those of a scene beside those of others: of the robot there are several."""
     meetings = dict(known.meetings)
-    own = {(ROBOT, ""): found[ROBOT], (REACH, ""): found[REACH], (HUMAN, piece.pair[0]): found[HUMAN]}
+    own = {(name, piece.pair[0] if name == HUMAN else ""): pairs for name, pairs in found.items()}
     for key, pairs in own.items():
         meetings[key] = tuple(dict.fromkeys([*meetings.get(key, ()), *pairs]))
     return replace(known, meetings=meetings)

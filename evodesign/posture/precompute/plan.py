@@ -134,7 +134,10 @@ def all_mean_people(setting: PrecomputeSetting) -> PrecomputeSetting:
 
 
 def _with_mean_person(scene: Scene) -> Scene:
-    given = scene.human.measured
-    if given is None or given.drawn == MEAN_PERSON:
-        return scene
-    return scene.with_agents(replace(scene.human, measured=replace(given, drawn=MEAN_PERSON)))
+    return scene.with_agents(
+        *(
+            replace(person, measured=replace(person.measured, drawn=MEAN_PERSON))
+            for person in scene.people
+            if person.measured is not None and person.measured.drawn != MEAN_PERSON
+        )
+    )

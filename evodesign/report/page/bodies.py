@@ -32,7 +32,7 @@ from evodesign.tree.surface import Surface
 def bodies(problem: DesignProblem) -> Bodies:
     """Everything that stands in the problem's scenes, the robot unscaled."""
     robot = problem.scene.robot
-    people = {scene.human.label: scene.human for scene in problem.scenes}
+    people = {person.label: person for scene in problem.scenes for person in scene.people}
     payloads = {scene.payload.label: scene.payload for scene in problem.scenes}
     position = _positions(robot.tree)
     changing = {position[name] for parameter in problem.space.parameters for name in parameter.links}

@@ -12,13 +12,13 @@ from evodesign.report.page.content import EffortContent
 
 
 def effort_content(scenes: Sequence[Scene], cases: Sequence[CaseDetail]) -> tuple[EffortContent, ...]:
-    """One for each case: in a lift that of the moment at which the person's torques are largest.
+    """One for each case, that of a lift at the person's largest torques; none of a robot alone.
 
     Args:
         scenes: every person with every load.
         cases: a design's postures, of these people.
     """
-    return tuple(_of(scenes, case) for case in cases)
+    return tuple(_of(scenes, case) for case in cases if scene_of(scenes, case.case.pair).people)
 
 
 def _of(scenes: Sequence[Scene], case: CaseDetail) -> EffortContent:

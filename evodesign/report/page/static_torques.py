@@ -36,8 +36,8 @@ class StaticTorques:
         return _model(self._scenes[0].robot)
 
     @cached_property
-    def _people(self) -> dict[tuple[str, str], AgentModel]:
-        return {scene.pair: _model(scene.human) for scene in self._scenes}
+    def _people(self) -> dict[tuple[str, str], list[AgentModel]]:
+        return {scene.pair: [_model(person) for person in scene.people] for scene in self._scenes}
 
     def of(
         self, robot: Tree, cases: Sequence[CaseDetail]
@@ -55,7 +55,7 @@ class StaticTorques:
             return (), {}
         own = self._robot.resized(robot)
         torques = tuple(
-            tuple(_static((own, self._people[case.case.pair]), each) for each in case.instants if moves)
+            tuple(_static((own, *self._people[case.case.pair]), each) for each in case.instants if moves)
             for case, moves in zip(cases, lifted, strict=True)
         )
         return torques, dict(own.agent.torque_limits) if own.agent.limits_torques else {}

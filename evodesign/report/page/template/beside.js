@@ -103,7 +103,7 @@ const besideHardware = (first, second) => {
 
 // The largest torque of each joint over the heights, with the person and load that are shown.
 const besideTorques = () =>
-  ["robot", "human"].flatMap((agent) => {
+  agentsHere().flatMap((agent) => {
     const [one, two] = [state.beside, state.selected].map((number) => {
       const most = new Map();
       const design = content.designs[number] ?? NOTHING_KNOWN;

@@ -82,7 +82,7 @@ const heightControl = (design) => {
     const solved = outcome?.status === "solved";
     detail.textContent = outcome
       ? solved
-        ? `Solved: ${isLift(at.stop) ? "at most " : ""}robot |torque| ${exact(outcome.robot_torque_norm)} N m, person ${exact(outcome.human_torque_norm)} N m; largest residual ${figure(outcome.residual, 2)}`
+        ? `Solved: ${isLift(at.stop) ? "at most " : ""}robot |torque| ${exact(outcome.robot_torque_norm)} N m${outcome.human_torque_norm == null ? "" : `, person ${exact(outcome.human_torque_norm)} N m`}; largest residual ${figure(outcome.residual, 2)}`
         : `${capital(outcome.status)}: ${outcome.reason}`
       : `The log holds no outcome for this ${severalPairs ? "case" : "height"}.`;
     const gap = clearanceAt(design, at);

@@ -3,6 +3,10 @@
 
 const AGENT_NAMES = { robot: "Robot", human: "Person" };
 
+// Who holds the load: a robot may do so alone.
+const agentsHere = () =>
+  content.bodies && !Object.keys(content.bodies.people).length ? ["robot"] : ["robot", "human"];
+
 const torquesAt = (design, agent, stop) => {
   const posture = postureAt(design, { ...shownCase(), stop });
   return posture ? posture.agents[agent].torques_n_m : null;
@@ -116,7 +120,7 @@ const agentSegments = (name, choose) =>
   element(
     "span",
     { class: "segments", role: "radiogroup", "aria-label": "Whose torques" },
-    ...["robot", "human"].map((agent) =>
+    ...agentsHere().map((agent) =>
       element(
         "label",
         {},
