@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import tomllib
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,12 +15,17 @@ from evodesign.errors import InputError
 from evodesign.evaluation.clearance import solved_distances
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.evaluation_json import evaluation_json
+from evodesign.evaluation.simulations import simulated_holds
 from evodesign.mechanics.scene import Role
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.shipped import SHIPPED
 from evodesign.problem.source import source_of
 from evodesign.quantities.design_result import DesignResult
+from evodesign.report.figures.design import write_design_figures
 from evodesign.report.page.bodies import bodies
+from evodesign.report.replay.layout import layout_text
+from evodesign.report.scene_models import SceneSet
+from evodesign.simulation.feedback import Feedback
 
 G = 9.81
 
@@ -125,3 +131,20 @@ def test_quantities_of_people_are_refused(name: str) -> None:
     objectives = {"minimise": ["robot_torque", name]}
     with pytest.raises(InputError, match=rf"wanted a \[human\] for '{name}', found a robot alone"):
         built(objectives=objectives)
+
+
+def test_its_posture_is_drawn_exported_and_simulated(
+    alone: DesignProblem, result: DesignResult, tmp_path: Path
+) -> None:
+    """The simulator's robot stands with the planned torques and holds the load where it is."""
+    details = Evaluator(alone).details(result)
+    cast = SceneSet.of(alone.scenes, result.tree)
+    assert cast.people == ()
+    stage = cast.placed_scene(details[0])
+    assert {wrench.agent for wrench in stage.wrenches} == {"robot"}
+    layout = json.loads(layout_text(cast, details))
+    assert layout["layout"]["second"] == "Plot!robot"
+    assert all(path.stat().st_size > 1000 for path in write_design_figures("alone", cast, details, tmp_path))
+    (held,) = simulated_holds(alone.scenes, result.tree, details[:1], 1.0, Feedback())
+    assert not held.outcome.agents["robot"].fell
+    assert held.outcome.drift < 1e-3

@@ -61,9 +61,11 @@ def layout_text(scene_set: SceneSet, cases: Sequence[CaseDetail]) -> str:
         scene_set: who stands there.
         cases: postures, whose torques choose the joints that are plotted.
     """
-    panels = {SCENE: _scene(scene_set, cases), **{PLOTS[name]: _plot(name, cases) for name in PLOTS}}
-    plots = {"first": PLOTS[ROBOT], "second": PLOTS[HUMAN], "direction": "column", "splitPercentage": 50}
-    layout = {"first": SCENE, "second": plots, "direction": "row", "splitPercentage": 64}
+    names = [name for name in PLOTS if name in scene_set.models[0].trees]
+    panels = {SCENE: _scene(scene_set, cases), **{PLOTS[name]: _plot(name, cases) for name in names}}
+    plots: Any = {"first": PLOTS[ROBOT], "second": PLOTS[HUMAN], "direction": "column", "splitPercentage": 50}
+    beside = plots if len(names) > 1 else PLOTS[ROBOT]
+    layout = {"first": SCENE, "second": beside, "direction": "row", "splitPercentage": 64}
     whole = {
         "configById": panels,
         "globalVariables": {},

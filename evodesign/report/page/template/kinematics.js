@@ -5,6 +5,10 @@
 // World frame: under the load, x from the robot to the person, z up. An agent's posture is given in its own
 // frame, which looks along +x at the load: the person's is the world's turned half round about z.
 
+// Who holds the load: a robot may do so alone.
+const agentsHere = () =>
+  content.bodies && !Object.keys(content.bodies.people).length ? ["robot"] : ["robot", "human"];
+
 const HALF_ROUND = [-1, 0, 0, 0, -1, 0, 0, 0, 1];
 const facing = (agent) => (agent === "human" ? HALF_ROUND : IDENTITY);
 

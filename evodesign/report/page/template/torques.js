@@ -3,13 +3,9 @@
 
 const AGENT_NAMES = { robot: "Robot", human: "Person" };
 
-// Who holds the load: a robot may do so alone.
-const agentsHere = () =>
-  content.bodies && !Object.keys(content.bodies.people).length ? ["robot"] : ["robot", "human"];
-
 const torquesAt = (design, agent, stop) => {
   const posture = postureAt(design, { ...shownCase(), stop });
-  return posture ? posture.agents[agent].torques_n_m : null;
+  return posture?.agents[agent]?.torques_n_m ?? null;
 };
 
 const boxTrace = (design, agent, name, ink, filled) => {
