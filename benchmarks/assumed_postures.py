@@ -106,8 +106,8 @@ class Variant:
         if measured is None:
             raise SystemExit(f"{scene.label}: wanted a person with a measured posture")
         drawn = MEAN_PERSON if self.women and "female" not in scene.human.label else self.drawn
-        return replace(
-            scene, human=replace(scene.human, measured=replace(measured, hold=self.given, drawn=drawn))
+        return scene.with_agents(
+            replace(scene.human, measured=replace(measured, hold=self.given, drawn=drawn))
         )
 
 

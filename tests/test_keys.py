@@ -270,11 +270,7 @@ def test_where_bodies_are_kept_apart_pieces_follow_from_all_scenes_and_tasks() -
     """What comes near whom is found with everyone's postures, and all that comes later has it."""
     free = setting_of("three_people_three_loads")
     scenes = tuple(
-        replace(
-            scene,
-            robot=replace(scene.robot, collisions=CollisionRules(0.005, ())),
-            human=replace(scene.human, collisions=CollisionRules(0.005, ())),
-        )
+        scene.with_agents(*(replace(each, collisions=CollisionRules(0.005, ())) for each in scene.agents))
         for scene in free.scenes
     )
     setting = replace(free, scenes=scenes, middle=scenes[0])

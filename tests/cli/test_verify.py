@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from evodesign.evolve import start
+from evodesign.records import FORMAT_VERSION
 from evodesign.runlog.session_log import Silent
 from tests.cli.here import evodesign
 from tests.faults.synthetic import synthetic_header
@@ -39,7 +40,7 @@ def test_a_sound_run_is_verified_with_its_digest(run: Path) -> None:
     assert "40 evaluations, 4 generations" in out
     assert "digest " in out
     found = json.loads(call("verify", str(run), "--json")[1])
-    assert (found["sound"], found["faults"], found["format_version"]) == (True, [], 2)
+    assert (found["sound"], found["faults"], found["format_version"]) == (True, [], FORMAT_VERSION)
     assert len(found["digest"]) == 64
 
 

@@ -76,12 +76,9 @@ def _with_stance(problem: DesignProblem, name: str, step: float, *, at_most: boo
         return replace(stance, **{name: value + step})
 
     def changed(scene: Scene) -> Scene:
-        human = (
-            scene.human
-            if scene.human.stance is None
-            else replace(scene.human, stance=moved(scene.human.stance))
-        )
-        return replace(scene, stance=moved(scene.stance), human=human)
+        own = [agent for agent in scene.agents if agent.stance is not None]
+        changed = scene.with_agents(*(replace(agent, stance=moved(agent.stance)) for agent in own))
+        return replace(changed, stance=moved(scene.stance))
 
     return as_before(problem, scene_with(problem, changed))
 
