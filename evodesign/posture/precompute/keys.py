@@ -104,5 +104,6 @@ def key_of(setting: PrecomputeSetting, piece: Piece, met: dict[int, Met] | None 
 
 def _parted(setting: PrecomputeSetting, piece: Piece) -> bool:
     """Whether a piece follows from what comes near whom, which is found where bodies are kept apart."""
-    apart = scene_of(setting.scenes, piece.pair).robot.collisions is not None
+    agents = scene_of(setting.scenes, piece.pair).agents
+    apart = any(agent.collisions is not None for agent in agents)
     return apart and piece.subject is not Subject.MEETINGS
