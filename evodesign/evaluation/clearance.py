@@ -64,7 +64,7 @@ class Clearances:
 
     def _nearest(self, robot: Tree, solids: SolidBodies, case: CaseDetail) -> BodyDistance:
         scene = self._scenes.get(case.case.pair)
-        if scene is None:
+        if scene is None or case.agents.keys() != {agent.name for agent in scene.agents}:
             name = on_one_line(case.case.name)
             raise RunError(f"the logged postures of case '{name}' are not those of the run's problem")
         trees = {agent.name: robot if agent.role is Role.ROBOT else agent.tree for agent in scene.agents}

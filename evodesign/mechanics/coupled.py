@@ -89,15 +89,12 @@ class CoupledModel:
         self._agents = scene.agents
         trees = [(agent, robot_tree if agent.role is Role.ROBOT else agent.tree) for agent in self._agents]
         grasps = {
-            _grasp(agent, hand): _world_from_agent(agent) @ np.array(scene.payload.grasp_point(agent, hand))
+            _grasp(agent, hand): agent.turn @ np.array(scene.payload.grasp_point(agent, hand))
             for agent in self._agents
             for hand in agent.hands
         }
         self._bodies = {
-            **{
-                agent.name: FloatingBody.of_tree(tree, agent.joints, _world_from_agent(agent))
-                for agent, tree in trees
-            },
+            **{agent.name: FloatingBody.of_tree(tree, agent.joints, agent.turn) for agent, tree in trees},
             PAYLOAD: FloatingBody.of_solid(scene.payload.inertia, grasps),
         }
 
@@ -140,7 +137,7 @@ class CoupledModel:
         if contact.touched is Touched.GROUND:
             blocks[agent.name], drift = states[agent.name].twist_in_frame(contact.frame)
             return np.hstack(list(blocks.values())), drift
-        agent_from_world = np.kron(np.eye(2), _world_from_agent(agent).T)[: self._hand_rows]
+        agent_from_world = np.kron(np.eye(2), agent.turn.T)[: self._hand_rows]
         hand, hand_drift = states[agent.name].twist_in_world(contact.frame)
         grasp, grasp_drift = states[PAYLOAD].twist_in_world(_grasp(agent, contact))
         blocks[agent.name], blocks[PAYLOAD] = hand, -grasp
@@ -151,11 +148,6 @@ class CoupledModel:
 def _grasp(agent: Agent, hand: Contact) -> str:
     """Name of the load's frame at a hand."""
     return f"{agent.name}_{hand.name}_grasp"
-
-
-def _world_from_agent(agent: Agent) -> Array:
-    """Rotation from the agent's frame to the world."""
-    return agent.turn
 
 
 def _selector(body: FloatingBody) -> Array:

@@ -88,6 +88,11 @@ class Contact:
         return self.patch
 
 
+def touching(contacts: Iterable[Contact], touched: Touched) -> tuple[Contact, ...]:
+    """The contacts with the ground, or with the load."""
+    return tuple(each for each in contacts if each.touched is touched)
+
+
 def two_hands_two_feet(
     hands: Mapping[str, str], soles: Mapping[str, str], sole: SoleSize
 ) -> tuple[Contact, ...]:
@@ -264,12 +269,12 @@ class Agent:
     @property
     def feet(self) -> tuple[Contact, ...]:
         """The contacts with the ground."""
-        return tuple(each for each in self.contacts if each.touched is Touched.GROUND)
+        return touching(self.contacts, Touched.GROUND)
 
     @property
     def hands(self) -> tuple[Contact, ...]:
         """The contacts with the load."""
-        return tuple(each for each in self.contacts if each.touched is Touched.LOAD)
+        return touching(self.contacts, Touched.LOAD)
 
     @property
     def hand_frames(self) -> tuple[str, ...]:

@@ -21,7 +21,7 @@ from evodesign.body.placement import Placement
 from evodesign.errors import ModelError
 from evodesign.human.coupled_joints import Rhythm
 from evodesign.mechanics.disturbance import Disturbance
-from evodesign.mechanics.scene import Agent, Contact, Scene, Touched
+from evodesign.mechanics.scene import Agent, Contact, Scene, Touched, touching
 from evodesign.posture.results import AgentPosture, Array
 from evodesign.tree.frames import link_frames
 from evodesign.tree.mirror_pairs import Mirror
@@ -54,12 +54,12 @@ class Form:
     @property
     def feet(self) -> tuple[Contact, ...]:
         """Its contacts with the ground."""
-        return tuple(each for each in self.contacts if each.touched is Touched.GROUND)
+        return touching(self.contacts, Touched.GROUND)
 
     @property
     def hands(self) -> tuple[Contact, ...]:
         """Its contacts with the load."""
-        return tuple(each for each in self.contacts if each.touched is Touched.LOAD)
+        return touching(self.contacts, Touched.LOAD)
 
     @property
     def counts(self) -> tuple[float, ...]:

@@ -20,7 +20,6 @@ from evodesign.problem.agents import (
     human_agents,
     robot_agent,
 )
-from evodesign.problem.alone import refuse_what_needs_people
 from evodesign.problem.collisions import with_collisions
 from evodesign.problem.constraints import constraints_of, refuse_constraints, with_bodies_apart
 from evodesign.problem.descriptors import LOWEST_REACH, search_descriptors
@@ -41,6 +40,7 @@ from evodesign.problem.from_tables import (
 )
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import held_alone, payloads, refuse_stiff_arms, scene_disturbances
+from evodesign.problem.robot_alone import refuse_what_needs_people
 from evodesign.problem.samples import samples_of
 from evodesign.problem.source import decode_toml
 from evodesign.problem.stance_limits import stance_of

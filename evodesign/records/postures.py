@@ -225,10 +225,12 @@ class CaseDetail(Record, frozen=True, omit_defaults=True):
     @property
     def hardest(self) -> CaseDetail:
         """The moment at which the person's torques [N m] are largest; the only one of a load held still."""
-        moments = self.moments
-        if len(moments) == 1:
-            return moments[0]
-        return max(moments, key=lambda moment: moment.agents["human"].torque_norm_n_m)
+
+        def strain(moment: CaseDetail) -> float:
+            person = moment.agents.get("human")
+            return 0.0 if person is None else person.torque_norm_n_m
+
+        return max(self.moments, key=strain)
 
     def thinned(self, most: int) -> CaseDetail:
         """The same with so many instants at most: both ends, and what lies evenly between."""

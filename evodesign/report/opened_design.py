@@ -127,9 +127,10 @@ class OpenedDesign:
             raise RunError(
                 f"{self.run.directory}: its problem has no person '{name}', of whom it has postures"
             )
-        return tuple(
-            ergonomics(people[detail.case.person], detail.hardest.agents[HUMAN]) for detail in self.cases
-        )
+        hardest = [detail.hardest for detail in self.cases]
+        if any(HUMAN not in moment.agents for moment in hardest):
+            raise RunError(f"{self.run.directory}: its problem has people, and a posture is of nobody")
+        return tuple(ergonomics(people[each.case.person], each.agents[HUMAN]) for each in hardest)
 
 
 def open_design(run: RunLog, number: int, jobs: int, progress: PrecomputeProgress) -> OpenedDesign:

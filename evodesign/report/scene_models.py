@@ -242,9 +242,15 @@ class SceneSet:
             RunError: the run's problem has not its person, load or joints.
         """
         models = next((models for models in self.models if models.pair == detail.case.pair), None)
-        if models is None or not all(
-            posture.torques_n_m.keys() == posture.joints_rad.keys() <= models.trees[name].joint_by_name.keys()
-            for name, posture in detail.agents.items()
+        if (
+            models is None
+            or detail.agents.keys() != models.trees.keys()
+            or not all(
+                posture.torques_n_m.keys()
+                == posture.joints_rad.keys()
+                <= models.trees[name].joint_by_name.keys()
+                for name, posture in detail.agents.items()
+            )
         ):
             case = on_one_line(detail.case.name)
             raise RunError(f"the logged postures of case '{case}' are not those of the run's problem")

@@ -22,6 +22,11 @@ from evodesign.records import (
     RunHeader,
 )
 
+CREWS: Final = (frozenset(("robot", "human")), frozenset(("robot",)))
+"""Who holds the load: the robot with a person, or alone."""
+
+CONTACTS: Final = frozenset(f"{side}_{part}" for side in ("left", "right") for part in ("hand", "foot"))
+
 LARGEST_NUMBER: Final = 10**9
 """More evaluations than any run has: what is counted and listed stays bounded."""
 
@@ -128,16 +133,10 @@ def _detail(detail: Detail) -> str:
 
 
 def _instant(instant: InstantDetail) -> str:
-    if not instant.agents:
-        return "a case has no posture of anybody"
+    if instant.agents.keys() not in CREWS:
+        return "a case has not one posture of the robot, and of nobody or a person beside it"
     if any(agents.keys() != instant.agents.keys() for agents in instant.disturbed.values()):
         return "a disturbance has not the agents of its posture"
-    if any(
-        each.wrenches.keys() != instant.agents[name].wrenches.keys()
-        for agents in instant.disturbed.values()
-        for name, each in agents.items()
-    ):
-        return "a disturbance has not the contacts of its posture"
     found: list[AgentDetail | LoadCaseDetail] = [*instant.agents.values()]
     found += [each for agents in instant.disturbed.values() for each in agents.values()]
     if not all(map(_complete, found)):
@@ -146,11 +145,10 @@ def _instant(instant: InstantDetail) -> str:
 
 
 def _complete(agent: AgentDetail | LoadCaseDetail) -> bool:
-    """Whether places have three components and wrenches six."""
+    """Whether places have three components, and there is a wrench of six for each hand and foot."""
     places = (agent.base_position_m, agent.base_rpy_rad) if isinstance(agent, AgentDetail) else ()
-    return all(len(place) == 3 for place in places) and all(
-        len(wrench) == 6 for wrench in agent.wrenches.values()
-    )
+    whole = agent.wrenches.keys() == CONTACTS and all(len(each) == 6 for each in agent.wrenches.values())
+    return whole and all(len(place) == 3 for place in places)
 
 
 def _counts(*numbers: int) -> bool:

@@ -51,7 +51,8 @@ def joint_inertias(found: SimulatedScene, parts: AgentParts) -> Array:
     model, data = found.model, found.data
     mass = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
-    at_hand = float(model.body_mass[found.load]) / 4.0
+    holding = sum(len(each.hands) for each in found.agents.values())
+    at_hand = float(model.body_mass[found.load]) / holding
     for hand in parts.hands.values():
         jacobian = np.zeros((3, model.nv))
         mujoco.mj_jacSite(model, data, jacobian, None, hand)

@@ -147,7 +147,7 @@ def test_hands_carry_what_a_disturbance_makes_of_the_load(pushed: Lifted, found:
 def test_a_check_sees_a_wrong_torque_under_a_disturbance(pushed: Lifted, found: LiftSolution) -> None:
     course, scene = found.course, pushed.setting.scene
     assert course is not None
-    models = pushed.agents
+    models = (pushed.robot, pushed.human)
     checker = LiftChecker(scene, *models, Checker(scene, *models))
     assert checker.check(course).wrong == ""
     robot = dict(course.disturbed[HEAVIER.name]["robot"])

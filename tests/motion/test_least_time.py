@@ -63,7 +63,7 @@ def test_the_least_time_is_that_of_a_checked_motion_at_its_limits(limited: Lifte
     instants = course.instants(np.linspace(0.0, course.lift.seconds, 400))
     torques = [abs(torque) for each in instants for torque in each.postures["robot"].torques.values()]
     assert MOST - 1e-3 < max(torques) < MOST + 1e-3
-    for model in limited.agents:
+    for model in (limited.robot, limited.human):
         fastest = fastest_joints(whole(model.agent), model.tree)
         for each in instants:
             for joint, speed in each.postures[model.agent.name].speeds.items():

@@ -14,6 +14,7 @@ import pinocchio as pin
 import pytest
 
 from evodesign.errors import ModelError
+from evodesign.mechanics.disturbance import Disturbance, Disturbances
 from evodesign.mechanics.scene import Agent, Grasp, Payload, Scene
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
@@ -130,6 +131,23 @@ def test_every_crew_holds_the_load_in_the_world(
     assert moment == pytest.approx(0.0, abs=1e-4)
     weight = sum(float(agent.tree.mass) for agent in scene.agents) + payload.mass
     assert below == pytest.approx(weight * G, abs=1e-3)
+
+
+def test_a_push_meets_whoever_stands_at_the_side(problem: DesignProblem) -> None:
+    """In the world's axes: what the ground gives to all feet balances weights and the push."""
+    pushed = Disturbance("pushed", push=(12.0, 7.0, 0.0), at="second")
+    scene = replace(crew(problem, "three sides"), disturbances=Disturbances((pushed,)))
+    found = solved(problem, scene, Symmetry.OFF)
+    assert found.solved, found.reason
+    force = np.array(pushed.push)
+    for agent in scene.agents:
+        posture, own = found.disturbed[pushed.name][agent.name], AgentModel.of(agent, agent.tree)
+        state = own.at(found.postures[agent.name])
+        for foot in agent.feet:
+            force += turned(agent) @ state.pose(foot.frame)[0] @ posture.wrenches[foot.name][:3]
+        force -= [0.0, 0.0, G * float(agent.tree.mass)]
+    force -= [0.0, 0.0, G * scene.payload.mass]
+    assert force == pytest.approx(0.0, abs=1e-3)
 
 
 def test_two_of_one_kind_who_face_each_other_bear_the_same(problem: DesignProblem) -> None:

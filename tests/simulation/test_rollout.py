@@ -92,7 +92,7 @@ def test_a_lift_follows_its_path(lifted: Lifted) -> None:
     assert solution.course is not None
     plan = lift_plan(solution.course, STEP)
     assert plan.times[-1] == pytest.approx(solution.lift.seconds)
-    trees = {model.agent.name: model.tree for model in lifted.agents}
+    trees = {model.agent.name: model.tree for model in (lifted.robot, lifted.human)}
     outcome = outcome_of(plan, rolled_out(lifted.setting.scene, trees, plan, Feedback()))
     assert outcome.stands
     assert outcome.drift < 1e-2

@@ -63,6 +63,11 @@ def turned_to_world(agent: Agent, in_agent: Expression) -> Expression:
     return ca.sparsify(ca.DM(agent.turn)) @ in_agent
 
 
+def turned_to_agent(agent: Agent, in_world: Expression) -> Expression:
+    """A vector in the agent's frame from one in world axes."""
+    return ca.sparsify(ca.DM(agent.turn.T)) @ in_world
+
+
 def push_on_load(hands: Mapping[str, Expression]) -> Expression:
     """Force of an agent on the load along the agent's own x, in which it looks at the load [N].
 

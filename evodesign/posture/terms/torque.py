@@ -37,7 +37,7 @@ from evodesign.posture.terms.base import (
     Unknown,
     both_ways,
 )
-from evodesign.posture.terms.load import turned_to_world
+from evodesign.posture.terms.load import turned_to_agent
 from evodesign.tree.equip import rated_torques
 from evodesign.tree.kinematics import vector
 
@@ -120,7 +120,7 @@ def _push(body: Body) -> Iterator[AppliedWrench]:
     """A disturbance's push on the agent's trunk, in its own frame."""
     push = body.disturbance.push_on(body.agent.name)
     if any(push):
-        force = turned_to_world(body.agent, vector(push))  # by 0 or 180 degrees, so there as back
+        force = turned_to_agent(body.agent, vector(push))
         frame = body.agent.pushed_frame
         yield AppliedWrench(frame, body.poses[frame].position, force, ca.DM.zeros(3))
 
