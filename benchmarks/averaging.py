@@ -27,7 +27,7 @@ from pathlib import Path
 
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.guess.problem_text import guessed_problem
-from evodesign.mechanics.scene import ROBOT
+from evodesign.mechanics.agent import ROBOT
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.check import AgentModel, Checker, sizes
 from evodesign.posture.formulations.base import Setting

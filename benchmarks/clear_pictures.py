@@ -22,7 +22,7 @@ from benchmarks.clearance import with_table
 from evodesign.analysis.front import front
 from evodesign.evaluation.evaluate import detail_of
 from evodesign.evaluation.factory import evaluator_of
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source
 from evodesign.quantities.design_result import DesignResult

@@ -25,7 +25,7 @@ from benchmarks.public_robots import timed
 from evodesign.evaluation.clearance import distance_json, solved_distances
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.factory import cached_precomputed
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.pool.worker import SerialPool
 from evodesign.posture.precompute.meetings import REACH
 from evodesign.problem.build import DesignProblem, build_problem

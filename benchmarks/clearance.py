@@ -33,7 +33,7 @@ from evodesign.body.placement import Placement
 from evodesign.evaluation.clearance import solved_distances
 from evodesign.evaluation.evaluate import Evaluator, detail_of
 from evodesign.evaluation.factory import evaluator_of
-from evodesign.mechanics.scene import ROBOT
+from evodesign.mechanics.agent import ROBOT
 from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source

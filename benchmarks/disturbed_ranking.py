@@ -21,8 +21,10 @@ from joblib import Parallel, delayed
 from scipy.stats import kendalltau, rankdata
 
 from benchmarks.inner_problem import HERE, Design, problem_at, random_designs
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
-from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp, Scene
+from evodesign.mechanics.payload import Grasp
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem

@@ -26,8 +26,8 @@ import tomli_w
 
 from benchmarks.inner_problem import HERE
 from evodesign.evaluation.evaluate import Evaluator
+from evodesign.mechanics.agent import HUMAN
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import HUMAN
 from evodesign.nlp.method import MethodName
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source

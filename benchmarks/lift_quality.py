@@ -24,7 +24,7 @@ from benchmarks.lift_speed import ENDS
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.factory import evaluator_of
 from evodesign.evaluation.lifts import Lifts
-from evodesign.mechanics.scene import HUMAN
+from evodesign.mechanics.agent import HUMAN
 from evodesign.motion.lift_program import LiftProgram
 from evodesign.motion.lifting import lift_program, moved_posture
 from evodesign.motion.solution import LiftSolution

@@ -32,7 +32,7 @@ import tomli_w
 from benchmarks.inner_problem import HERE, Design, processors
 from evodesign.body.placement import Placement
 from evodesign.evaluation.factory import evaluator_of
-from evodesign.mechanics.scene import HUMAN
+from evodesign.mechanics.agent import HUMAN
 from evodesign.nlp.method import MethodName
 from evodesign.posture.design_checkers import DesignCheckers
 from evodesign.posture.formulations.base import Setting

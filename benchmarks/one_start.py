@@ -17,7 +17,9 @@ import numpy as np
 
 from evodesign.human.measured_posture import HumanPosture
 from evodesign.human.population import population
-from evodesign.mechanics.scene import ROBOT, Payload, Role, Scene
+from evodesign.mechanics.agent import ROBOT, Role
+from evodesign.mechanics.payload import Payload
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.solver import RawSolution, SolverCache
 from evodesign.posture.formulations.person import PersonProblem

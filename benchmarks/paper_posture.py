@@ -21,7 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.projected_graph import DAMPING, Statics, agent_matrices, projected_statics
-from evodesign.mechanics.scene import SIDES, Agent, Scene
+from evodesign.mechanics.agent import SIDES, Agent
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import ConstraintBlock, Program, Variable
 from evodesign.nlp.solver import RawSolution, Solver

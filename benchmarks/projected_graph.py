@@ -19,10 +19,12 @@ from typing import Any
 
 import casadi as ca
 
+from evodesign.mechanics.agent import SIDES, Agent
 from evodesign.mechanics.balance import AppliedWrench, cut
 from evodesign.mechanics.coupled import PAYLOAD
 from evodesign.mechanics.dynamics import mass_matrix
-from evodesign.mechanics.scene import SIDES, Agent, Payload, Scene
+from evodesign.mechanics.payload import Payload
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.terms.base import hand_wrench
 from evodesign.posture.terms.grasp import GRASP_ROWS
 from evodesign.tree.kinematics import Pose, euler_rotation, forward, vector

@@ -18,8 +18,9 @@ import numpy as np
 from benchmarks.inner_problem import problem_at
 from evodesign.design.parameter import ALLOCATIONS, EFFORT_RATIO, ROBOT_SHARE, DesignParameter, ParameterKind
 from evodesign.design.space import DesignSpace
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp
+from evodesign.mechanics.payload import Grasp
 from evodesign.posture.allocation import EffortWeights, shared_scene
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker, sizes
 from evodesign.posture.formulations.base import Setting

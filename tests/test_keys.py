@@ -24,7 +24,8 @@ from evodesign.collision.rules import CollisionRules
 from evodesign.evaluation.factory import NO_PART_OF_EVALUATIONS, problem_digest
 from evodesign.evaluation.precompute import precompute_setting
 from evodesign.identity import Exceptions
-from evodesign.mechanics.scene import Payload, Scene
+from evodesign.mechanics.payload import Payload
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.formulations.base import NO_PART_OF_PROGRAMS, program_key
 from evodesign.posture.postures import Symmetry
 from evodesign.posture.precompute.keys import NO_PART_OF, key_of, no_part_of

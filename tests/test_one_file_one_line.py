@@ -14,7 +14,8 @@ import pytest
 
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.sensitivities import Sensitivities
-from evodesign.mechanics.scene import ROBOT, SIDES, Scene
+from evodesign.mechanics.agent import ROBOT, SIDES
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.quantities.design_result import CaseQuantity

@@ -21,7 +21,7 @@ from typing import Any
 from evodesign.design.space import DesignSpace
 from evodesign.evaluation.logged_posture import logged_posture
 from evodesign.hardware.actuators import Actuator
-from evodesign.mechanics.scene import ROBOT, Agent
+from evodesign.mechanics.agent import ROBOT, Agent
 from evodesign.mechanics.stance_case import StanceCase
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem

@@ -19,7 +19,8 @@ from evodesign.collision.rules import LOAD
 from evodesign.collision.shapes import box_solid
 from evodesign.errors import RunError, on_one_line
 from evodesign.evaluation.evaluate import detail_of
-from evodesign.mechanics.scene import HUMAN, Agent, Role, Scene
+from evodesign.mechanics.agent import HUMAN, Agent, Role
+from evodesign.mechanics.scene import Scene
 from evodesign.quantities.design_result import DesignResult
 from evodesign.records import AgentDetail, Case, CaseDetail
 from evodesign.tree.frames import link_frames

@@ -17,7 +17,7 @@ from evodesign.evaluation.gradients import assessed_gradients
 from evodesign.evaluation.inner import inner_problems
 from evodesign.evaluation.judge import is_judged
 from evodesign.evaluation.sensitivities import Sensitivities
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.solver import SolverCache, own_solvers
 from evodesign.pool.base import Limits

@@ -9,7 +9,8 @@ import msgspec
 
 from evodesign.errors import InputError
 from evodesign.evaluation.logged_posture import logged_posture
-from evodesign.mechanics.scene import Role, Scene, scene_of
+from evodesign.mechanics.agent import Role
+from evodesign.mechanics.scene import Scene, scene_of
 from evodesign.motion.solution import LiftSolution
 from evodesign.records import CaseDetail
 from evodesign.simulation.feedback import Feedback

@@ -20,7 +20,7 @@ import numpy as np
 
 from evodesign.evaluation.sizing import BOUNDS
 from evodesign.evaluation.trees_beside import TreesBeside
-from evodesign.mechanics.scene import ROBOT
+from evodesign.mechanics.agent import ROBOT
 from evodesign.mechanics.stance_case import StanceCase, StanceTorques
 from evodesign.motion.derivative import LiftDerivative
 from evodesign.nlp.optimality import Array, NotDifferentiable

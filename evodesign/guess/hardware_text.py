@@ -18,7 +18,7 @@ from textwrap import wrap
 from evodesign.body.placement import Placement, Vector, dot, rotate
 from evodesign.guess.body_plan import BodyPlan
 from evodesign.guess.limbs import Limb
-from evodesign.mechanics.scene import SIDES
+from evodesign.mechanics.agent import SIDES
 from evodesign.problem.file import Facing
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Joint

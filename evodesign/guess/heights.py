@@ -20,7 +20,7 @@ import tomli_w
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError
 from evodesign.evaluation.inner import inner_problems
-from evodesign.mechanics.scene import Agent
+from evodesign.mechanics.agent import Agent
 from evodesign.posture.formulations.reach import person_reach
 from evodesign.posture.postures import Symmetry
 from evodesign.problem.build import DesignProblem, build_problem

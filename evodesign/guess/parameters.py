@@ -11,8 +11,9 @@ from evodesign.body.placement import Vector, add, dot, scale
 from evodesign.errors import ModelError
 from evodesign.guess.body_plan import BodyPlan
 from evodesign.guess.limbs import Limb
+from evodesign.mechanics.agent import SIDES
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import SIDES, WRIST_MOMENT
+from evodesign.mechanics.payload import WRIST_MOMENT
 from evodesign.tree.resize import growth_of
 from evodesign.tree.welded import WeldedBody, WeldedTree
 

@@ -19,7 +19,7 @@ from evodesign.collision.shapes import solids_of
 from evodesign.errors import InputError
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.guess.body_plan import body_plan
-from evodesign.mechanics.scene import SIDES, Agent
+from evodesign.mechanics.agent import SIDES, Agent
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.file import Facing, ProblemFile
 from evodesign.problem.source import decode_toml

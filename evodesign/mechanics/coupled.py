@@ -23,8 +23,10 @@ from types import MappingProxyType
 import numpy as np
 import scipy
 
+from evodesign.mechanics.agent import Agent, Contact, Role, Touched
 from evodesign.mechanics.floating_base import ROOT, Array, BodyState, Configuration, FloatingBody
-from evodesign.mechanics.scene import Agent, Contact, Grasp, Role, Scene, Touched
+from evodesign.mechanics.payload import Grasp
+from evodesign.mechanics.scene import Scene
 from evodesign.tree.model import Tree
 
 PAYLOAD = "payload"

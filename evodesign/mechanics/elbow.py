@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from evodesign.body.placement import Vector, dot, scale
-from evodesign.mechanics.scene import Agent, Contact
+from evodesign.mechanics.agent import Agent, Contact
 from evodesign.tree.model import Joint, JointKind, Tree
 
 REACH = 0.45

@@ -13,8 +13,10 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from evodesign.mechanics.agent import Agent, Contact, Role
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import Agent, Contact, Grasp, Role, Scene
+from evodesign.mechanics.payload import Grasp
+from evodesign.mechanics.scene import Scene
 
 Array = NDArray[np.float64]
 

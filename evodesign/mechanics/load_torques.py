@@ -21,8 +21,8 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.balance import AppliedWrench, cut
-from evodesign.mechanics.scene import Agent
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Link, Tree
 

@@ -22,8 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.human.back import FLEXION, LUMBAR, MUSCLE_LEVER
+from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import Agent
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Tree
 

@@ -31,7 +31,8 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from evodesign.mechanics.scene import Contact, Grasp
+from evodesign.mechanics.agent import Contact
+from evodesign.mechanics.payload import Grasp
 from evodesign.nlp.blocks import Block
 from evodesign.nlp.program import ConstraintBlock, Expression, Variable
 from evodesign.posture.allocation import shared_scene, shared_weights

@@ -22,7 +22,8 @@ import scipy
 from numpy.typing import NDArray
 
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import Grasp, Scene
+from evodesign.mechanics.payload import Grasp
+from evodesign.mechanics.scene import Scene
 from evodesign.motion.course import LiftCourse
 from evodesign.motion.instant import fastest_joints
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker, SceneMotion

@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.design.spread import spread_designs
-from evodesign.mechanics.scene import HUMAN, ROBOT, scene_of
+from evodesign.mechanics.agent import HUMAN, ROBOT
+from evodesign.mechanics.scene import scene_of
 from evodesign.motion.lift_program import LiftProgram
 from evodesign.motion.lifting import MOVED, lift_program, lift_starts, moved_posture
 from evodesign.nlp.program import Start

@@ -14,7 +14,8 @@ from dataclasses import dataclass, replace
 from evodesign.body.placement import Scalar
 from evodesign.design.parameter import EFFORT_RATIO, ROBOT_SHARE
 from evodesign.design.space import DesignSpace
-from evodesign.mechanics.scene import Agent, Role, Scene
+from evodesign.mechanics.agent import Agent, Role
+from evodesign.mechanics.scene import Scene
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,10 +15,11 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from evodesign.mechanics.agent import Agent, Contact
 from evodesign.mechanics.balance import AppliedWrench
 from evodesign.mechanics.disturbance import Disturbance
 from evodesign.mechanics.inertial_forces import euler_motion, inertial_wrenches
-from evodesign.mechanics.scene import Agent, Contact, Scene
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.program import ConstraintBlock, Expression, Variable
 from evodesign.posture.limit_groups import Enforced
 from evodesign.posture.parting import PartedBody

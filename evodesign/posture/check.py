@@ -19,9 +19,10 @@ from evodesign.body.placement import Vector
 from evodesign.collision.clearance import BodyDistance
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair
 from evodesign.collision.scene_bodies import CheckedBodies, SceneBodies
+from evodesign.mechanics.agent import Agent, Role
 from evodesign.mechanics.disturbance import Disturbance
 from evodesign.mechanics.floating_base import ROOT, BodyState, Configuration, FloatingBody
-from evodesign.mechanics.scene import Agent, Role, Scene
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture, Array, Instant
 from evodesign.posture.terms.base import UNDISTURBED, BodyTerm, MeasuredBody, MeasuredSystem, Residual
 from evodesign.posture.terms.registry import TERMS

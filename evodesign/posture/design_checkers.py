@@ -7,7 +7,8 @@ from functools import lru_cache
 
 from evodesign.collision.zero_posture import built_in_slack
 from evodesign.design.space import DesignSpace
-from evodesign.mechanics.scene import Agent, Scene
+from evodesign.mechanics.agent import Agent
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.check import AgentModel, Checker
 
 AT_HAND = 64

@@ -20,8 +20,9 @@ import numpy as np
 from evodesign.body.placement import Placement
 from evodesign.errors import ModelError
 from evodesign.human.coupled_joints import Rhythm
+from evodesign.mechanics.agent import Agent, Contact, Touched, touching
 from evodesign.mechanics.disturbance import Disturbance
-from evodesign.mechanics.scene import Agent, Contact, Scene, Touched, touching
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture, Array
 from evodesign.tree.frames import link_frames
 from evodesign.tree.mirror_pairs import Mirror

@@ -18,8 +18,8 @@ from evodesign.human.anthropometry_tables import ShoulderWidth
 from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree
 from evodesign.human.population import population
 from evodesign.human.strength import joint_strengths, with_given
+from evodesign.mechanics.agent import HUMAN, ROBOT, SIDES, Agent, Gaze, Role, two_hands_two_feet
 from evodesign.mechanics.contact import SoleSize
-from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Gaze, Role, two_hands_two_feet
 from evodesign.problem.file import (
     Facing,
     FrameTable,

@@ -8,7 +8,8 @@ import msgspec
 
 from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError, nearest_name
-from evodesign.mechanics.scene import Agent, Scene, scene_of
+from evodesign.mechanics.agent import Agent
+from evodesign.mechanics.scene import Scene, scene_of
 from evodesign.mechanics.stance_case import StanceCase
 from evodesign.nlp.method import MethodName, SolverOptions
 from evodesign.nlp.solver import available

@@ -13,7 +13,8 @@ from evodesign.collision.rules import LOAD, PLANES, BodyPair, CollisionRules
 from evodesign.design.space import DesignSpace
 from evodesign.design.spread import spread_designs
 from evodesign.errors import InputError, nearest_name
-from evodesign.mechanics.scene import ROBOT, Agent, Scene
+from evodesign.mechanics.agent import ROBOT, Agent
+from evodesign.mechanics.scene import Scene
 from evodesign.problem.file import CollisionsTable, ProblemFile
 from evodesign.records import ProblemSource
 

@@ -11,7 +11,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from evodesign.errors import InputError, nearest_name
-from evodesign.mechanics.scene import Agent
+from evodesign.mechanics.agent import Agent
 from evodesign.problem.file import BoundsTable, ProblemFile
 from evodesign.problem.torque_limits import PEAK_TORQUE, refuse_unlimited_peak
 from evodesign.problem.unanswered_quantities import refuse_unanswered_quantity

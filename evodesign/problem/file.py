@@ -18,7 +18,7 @@ from evodesign.human.anthropometry_tables import Sex, ShoulderWidth
 from evodesign.human.measured_posture import HumanPosture
 from evodesign.human.population import PopulationSex
 from evodesign.mechanics.disturbance import OverCases, PushedAt
-from evodesign.mechanics.scene import Grasp, GraspDirection
+from evodesign.mechanics.payload import Grasp, GraspDirection
 from evodesign.nlp.method import MethodName
 from evodesign.posture.postures import Symmetry
 from evodesign.problem.baseline_table import BaselineTable

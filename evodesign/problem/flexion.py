@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError
-from evodesign.mechanics.scene import Agent, Contact
+from evodesign.mechanics.agent import Agent, Contact
 from evodesign.records import ProblemSource
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Joint, JointKind

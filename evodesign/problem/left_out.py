@@ -13,7 +13,7 @@ from collections.abc import Iterator
 import msgspec
 
 from evodesign.human.measured_posture import USUAL_POSTURE, HumanPosture
-from evodesign.mechanics.scene import WRIST_MOMENT
+from evodesign.mechanics.payload import WRIST_MOMENT
 from evodesign.records import ProblemSource
 
 

@@ -7,19 +7,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from evodesign.errors import InputError
+from evodesign.mechanics.agent import HUMAN, ROBOT, SIDES, TO_THE_LEFT, Agent
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
 from evodesign.mechanics.elbow import elbow
-from evodesign.mechanics.scene import (
-    HUMAN,
-    ROBOT,
-    SIDES,
-    TO_THE_LEFT,
-    WRIST_MOMENT,
-    Agent,
-    Grasp,
-    GraspDirection,
-    Payload,
-)
+from evodesign.mechanics.payload import WRIST_MOMENT, Grasp, GraspDirection, Payload
 from evodesign.problem.file import DisturbanceTable, PayloadTable, ProblemFile
 from evodesign.records import ProblemSource
 

@@ -11,8 +11,9 @@ import msgspec
 from evodesign.body.shape import Box, Cylinder, Shape
 from evodesign.design.parameter import DesignParameter, ParameterKind
 from evodesign.errors import ModelError
+from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.disturbance import Disturbance
-from evodesign.mechanics.scene import Agent, Payload
+from evodesign.mechanics.payload import Payload
 from evodesign.problem.agents import everyone
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.collisions import may_overlap

@@ -11,7 +11,7 @@ from evodesign.human.anthropometry import Person
 from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
 from evodesign.human.measured_posture import unmeasured_heights
-from evodesign.mechanics.scene import Agent
+from evodesign.mechanics.agent import Agent
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.left_out import left_out
 from evodesign.tree.model import Joint

@@ -19,7 +19,7 @@ from evodesign.human.measured_posture import (
     drawn_person,
     measured_posture,
 )
-from evodesign.mechanics.scene import Agent
+from evodesign.mechanics.agent import Agent
 from evodesign.problem.file import HumanTable, JointRanges
 from evodesign.records import ProblemSource
 from evodesign.tree.frames import link_frames

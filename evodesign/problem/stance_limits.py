@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from evodesign.errors import InputError
 from evodesign.human.stance import feet_apart, trunk_clearance
-from evodesign.mechanics.scene import Agent, StanceLimits
+from evodesign.mechanics.agent import Agent, StanceLimits
 from evodesign.problem.file import ProblemFile
 from evodesign.records import ProblemSource
 

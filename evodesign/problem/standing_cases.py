@@ -11,8 +11,8 @@ from collections.abc import Iterator, Sequence
 
 from evodesign.body.placement import Vector
 from evodesign.errors import InputError
+from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import Agent
 from evodesign.mechanics.stance_case import RaisedHand, StanceCase
 from evodesign.problem.design_table import Feet, Hands, HoldTable, LoadCaseTable, Pushed, PushTable
 from evodesign.problem.file import ProblemFile

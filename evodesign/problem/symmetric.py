@@ -18,7 +18,8 @@ from dataclasses import dataclass, replace
 from evodesign.body.placement import Placement
 from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError, ModelError, nearest_name
-from evodesign.mechanics.scene import Agent, Scene
+from evodesign.mechanics.agent import Agent
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.postures import Symmetry
 from evodesign.posture.symmetry import half, symmetric_forms
 from evodesign.problem.file import ProblemFile

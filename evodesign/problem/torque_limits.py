@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from fnmatch import fnmatchcase
 
 from evodesign.errors import InputError, nearest_name
-from evodesign.mechanics.scene import Agent
+from evodesign.mechanics.agent import Agent
 from evodesign.problem.file import ProblemFile, TorqueLimits
 from evodesign.records import ProblemSource, Sense
 

@@ -8,8 +8,8 @@ from evodesign.errors import InputError
 from evodesign.hardware.actuators import catalogue
 from evodesign.hardware.structure import STRENGTHS
 from evodesign.human.back import FLEXION, LUMBAR
+from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.lumbar_load import has_lumbar_disc
-from evodesign.mechanics.scene import Agent
 from evodesign.problem.file import ProblemFile
 from evodesign.quantities.hardware_quantities import COST, NEED_ACTUATORS, NEED_WALLS, OF_BEAMS
 from evodesign.quantities.motion_quantities import NEED_LIFTS, OF_HOLDS, SPINE

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from evodesign.design.space import DesignSpace
 from evodesign.hardware.actuators import actuator_law
 from evodesign.mechanics.added_mass import AddedMasses, joint_slopes
+from evodesign.mechanics.agent import ROBOT, Agent
 from evodesign.mechanics.floating_base import Configuration, FloatingBody
-from evodesign.mechanics.scene import ROBOT, Agent
 from evodesign.mechanics.stance_case import StanceCase, StanceTorques, stance_slopes, stance_torques
 from evodesign.posture.results import CaseSolution
 

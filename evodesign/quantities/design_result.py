@@ -8,7 +8,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from evodesign.design.space import DesignSpace
-from evodesign.mechanics.scene import Agent, Scene, scene_of
+from evodesign.mechanics.agent import Agent
+from evodesign.mechanics.scene import Scene, scene_of
 from evodesign.posture.formulations.codesign import JointSettings
 from evodesign.posture.formulations.reach import Reach
 from evodesign.posture.results import AgentPosture, Array, CaseSolution

@@ -29,10 +29,10 @@ from evodesign.human.endurance import Endurance, endurance
 from evodesign.human.niosh import LiftingTask, NioshMultipliers, multipliers
 from evodesign.human.strength import RelativeTorque, largest_relative_torque
 from evodesign.human.worksheets import HeldLoad, Score, reba, rula
+from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.load_torques import load_torques
 from evodesign.mechanics.lumbar_load import LumbarLoad, has_lumbar_disc, lumbar_load
-from evodesign.mechanics.scene import Agent
 from evodesign.quantities.observed import observed
 from evodesign.records import AgentDetail
 from evodesign.tree.frames import link_frames

@@ -18,8 +18,9 @@ import numpy as np
 
 from evodesign.body.placement import Placement
 from evodesign.mechanics import link_beams
+from evodesign.mechanics.agent import ROBOT, Agent
 from evodesign.mechanics.floating_base import FloatingBody
-from evodesign.mechanics.scene import ROBOT, Agent, Scene
+from evodesign.mechanics.scene import Scene
 from evodesign.mechanics.stance_case import StanceCase, StanceTorques, stance_torques
 from evodesign.posture.results import AgentPosture
 from evodesign.tree.equip import actuators_of

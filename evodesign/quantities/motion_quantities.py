@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.human.back import LUMBAR
-from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
+from evodesign.mechanics.agent import HUMAN, ROBOT
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture
 from evodesign.quantities.hardware_quantities import holding_power, power_by_torque
 

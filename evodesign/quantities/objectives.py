@@ -25,8 +25,9 @@ import numpy as np
 from evodesign.collision.zero_posture import built_in_slack
 from evodesign.errors import InputError
 from evodesign.human.strength import largest_relative_torque
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.mechanics.balance import standing_height_of_mass
-from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
+from evodesign.mechanics.scene import Scene
 from evodesign.motion.solution import MotionCase
 from evodesign.outside import imported, is_outside
 from evodesign.posture.results import AgentPosture

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from evodesign.body.placement import Placement
 from evodesign.human.worksheets import ABDUCTED, UNSEEN, ArmSeen, BodySeen
-from evodesign.mechanics.scene import SIDES, Agent
+from evodesign.mechanics.agent import SIDES, Agent
 from evodesign.records import AgentDetail
 from evodesign.tree.frames import link_frames
 

@@ -16,9 +16,10 @@ import numpy as np
 
 from evodesign.human.back import FLEXION, MUSCLE_LEVER
 from evodesign.human.endurance import endurance
+from evodesign.mechanics.agent import HUMAN, Agent, Contact
 from evodesign.mechanics.load_torques import LoadTorques, load_torques
 from evodesign.mechanics.lumbar_load import LumbarLoad, lumbar_load
-from evodesign.mechanics.scene import HUMAN, Agent, Contact, Scene
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture, Array
 from evodesign.quantities.design_result import CaseQuantity, DesignResult, PostureSlopes, values_over_instants
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from evodesign.analysis.front import front
 from evodesign.analysis.people_spread import PeopleSpread, spread_of_run
 from evodesign.errors import EvodesignError, InputError, RunError, on_one_line
-from evodesign.mechanics.scene import HUMAN
+from evodesign.mechanics.agent import HUMAN
 from evodesign.records import Case, CaseDetail, Detail, Evaluation, RunHeader
 from evodesign.report.scene_models import SceneSet
 from evodesign.runlog.run import RunLog
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from evodesign.collision.clearance import BodyDistance
     from evodesign.evaluation.evaluate import Evaluator
     from evodesign.evaluation.progress import PrecomputeProgress
-    from evodesign.mechanics.scene import Agent
+    from evodesign.mechanics.agent import Agent
     from evodesign.problem.build import DesignProblem
     from evodesign.quantities.ergonomics import Ergonomics
 

@@ -18,7 +18,9 @@ from dataclasses import dataclass
 from evodesign.body.placement import Placement, Vector, rotate
 from evodesign.body.shape import Box, Shape
 from evodesign.errors import RunError, on_one_line
-from evodesign.mechanics.scene import ROBOT, Agent, Payload, Role, Scene
+from evodesign.mechanics.agent import ROBOT, Agent, Role
+from evodesign.mechanics.payload import Payload
+from evodesign.mechanics.scene import Scene
 from evodesign.records import AgentDetail, CaseDetail, Task
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Link, Mesh, Tree

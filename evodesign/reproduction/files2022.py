@@ -20,7 +20,7 @@ import msgspec
 
 from evodesign.errors import InputError
 from evodesign.files import write_whole
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.records import CaseDetail, Status
 from evodesign.report.figures.joint_torques import torque_boxes
 from evodesign.report.figures.paint import write_figure

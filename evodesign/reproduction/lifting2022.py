@@ -13,7 +13,7 @@ from evodesign.analysis.front import front
 from evodesign.evaluation.baseline import GENERATION, Baseline, broken_limits, held_at, torque_difference
 from evodesign.evaluation.evaluate import detail_of
 from evodesign.evaluation.factory import evaluator_of
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.posture.formulations.codesign import JointSolution
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Evaluation

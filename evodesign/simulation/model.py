@@ -25,9 +25,11 @@ import mujoco
 import numpy as np
 
 from evodesign.body.placement import Placement, quaternion_wxyz
+from evodesign.mechanics.agent import Agent, Contact
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.contact import Ground
-from evodesign.mechanics.scene import Agent, Contact, Grasp, Payload, Scene
+from evodesign.mechanics.payload import Grasp, Payload
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture, Array
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.frames import link_frames

@@ -13,8 +13,10 @@ from statistics import fmean
 
 from evodesign.human.anthropometry import Person
 from evodesign.human.measured_posture import HumanPosture, PostureRow
+from evodesign.mechanics.agent import HUMAN, ROBOT, Role
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import HUMAN, ROBOT, Payload, Role, Scene
+from evodesign.mechanics.payload import Payload
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.formulations.person import PersonProblem

@@ -25,9 +25,9 @@ from evodesign.human.anthropometry import Person, sole_size
 from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree
 from evodesign.human.coupled_joints import rhythms
 from evodesign.human.measured_posture import MARK, SIDES, HumanPosture, PostureRow, measured_posture
+from evodesign.mechanics.agent import HUMAN, Agent, Role, two_hands_two_feet
 from evodesign.mechanics.contact import SoleSize
 from evodesign.mechanics.floating_base import ROOT, BodyState
-from evodesign.mechanics.scene import HUMAN, Agent, Role, two_hands_two_feet
 from evodesign.posture.check import AgentModel
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.seeking.measured_starts import posture_of_features

@@ -13,9 +13,9 @@ from benchmarks.paper_formulation import measure_ours
 from benchmarks.paper_posture import PaperProgram, paper_program
 from benchmarks.projected_graph import agent_matrices
 from evodesign.evaluation.evaluate import Evaluator
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.mechanics.coupled import CoupledModel
 from evodesign.mechanics.projected import contact_wrenches, projected_torques
-from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.solver import RawSolution
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import AgentPosture

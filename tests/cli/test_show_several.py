@@ -10,7 +10,7 @@ import pytest
 
 from evodesign.cli.output import rounded
 from evodesign.cli.show import show
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.problem.build import DesignProblem
 from evodesign.runlog.run import RunLog
 from tests.cli.test_show_and_export import cells

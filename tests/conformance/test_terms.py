@@ -12,8 +12,10 @@ import pytest
 
 from evodesign.human.coupled_joints import coupled_joints
 from evodesign.human.measured_posture import measured_posture
+from evodesign.mechanics.agent import HUMAN, ROBOT, Gaze
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, PushedAt
-from evodesign.mechanics.scene import HUMAN, ROBOT, Gaze, Grasp, GraspDirection, Scene
+from evodesign.mechanics.payload import Grasp, GraspDirection
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.program import Program
 from evodesign.posture.assemble import CaseSymbols, Embodied, assemble
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import msgspec
 
-from evodesign.mechanics.scene import StanceLimits
+from evodesign.mechanics.agent import StanceLimits
 from evodesign.problem.file import LimitsTable
 
 ROW = re.compile(r"^\| `(\w+)` \| ([^|]+) \| (\w+) \| [^|]+ \| [^|]+ \|$", re.MULTILINE)

@@ -10,7 +10,7 @@ from evodesign.evaluation.evaluate import Evaluator, detail_of
 from evodesign.human.endurance import endurance_tables
 from evodesign.human.population import population, population_table
 from evodesign.human.strength import joint_strengths, strength_tables
-from evodesign.mechanics.scene import HUMAN
+from evodesign.mechanics.agent import HUMAN
 from evodesign.problem.build import DesignProblem
 from evodesign.quantities.ergonomics import ergonomics
 

@@ -12,8 +12,8 @@ import pytest
 
 from evodesign.evaluation.bill import bill_of_materials
 from evodesign.evaluation.evaluate import Evaluator, detail_of
+from evodesign.mechanics.agent import ROBOT, SIDES
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import ROBOT, SIDES
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source

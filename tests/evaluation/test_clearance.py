@@ -13,7 +13,7 @@ from evodesign.errors import RunError
 from evodesign.evaluation.clearance import Clearances, overlaps, solved_distances
 from evodesign.evaluation.evaluate import Evaluator, detail_of
 from evodesign.evaluation.evaluation_json import evaluation_json
-from evodesign.mechanics.scene import ROBOT
+from evodesign.mechanics.agent import ROBOT
 from evodesign.posture.check import AgentModel
 from evodesign.problem.build import DesignProblem
 from evodesign.quantities.design_result import DesignResult

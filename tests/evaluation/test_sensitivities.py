@@ -15,8 +15,8 @@ import pytest
 
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.sensitivities import DesignDerivative, ObjectiveSensitivity, Sensitivities
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.mechanics.balance import center_of_mass
-from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem

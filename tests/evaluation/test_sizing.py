@@ -18,7 +18,7 @@ from evodesign.evaluation.gradients import assessed_gradients
 from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.evaluation.sizing import BOUNDS
 from evodesign.hardware.actuators import actuator_law
-from evodesign.mechanics.scene import ROBOT
+from evodesign.mechanics.agent import ROBOT
 from evodesign.mechanics.stance_case import StanceCase
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import CaseSolution

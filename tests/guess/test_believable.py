@@ -17,9 +17,10 @@ import pytest
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.guess.body_plan import body_plan
 from evodesign.guess.problem_text import guessed_problem, inertia_rule
+from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.elbow import elbow
 from evodesign.mechanics.load_share import share_interval
-from evodesign.mechanics.scene import Agent, Scene
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.left_out import left_out

@@ -18,8 +18,8 @@ import pytest
 from evodesign.human.anthropometry import Person
 from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
+from evodesign.mechanics.agent import SIDES, Agent
 from evodesign.mechanics.balance import GRAVITY, AppliedWrench, center_of_mass, cut
-from evodesign.mechanics.scene import SIDES, Agent
 from evodesign.problem.build import DesignProblem
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Tree

@@ -10,8 +10,8 @@ import pytest
 
 from evodesign.body.placement import Placement
 from evodesign.guess.problem_text import guessed_problem
+from evodesign.mechanics.agent import SIDES, Agent, Contact
 from evodesign.mechanics.elbow import elbow
-from evodesign.mechanics.scene import SIDES, Agent, Contact
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import source_of
 from evodesign.tree.frames import link_frames

@@ -6,9 +6,9 @@ import casadi as ca
 import numpy as np
 import pytest
 
+from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.balance import cut
 from evodesign.mechanics.inertial_forces import euler_motion, inertial_wrenches
-from evodesign.mechanics.scene import Agent
 from evodesign.posture.check import AgentModel, AgentMotion
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem

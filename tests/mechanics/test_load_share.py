@@ -8,9 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.load_share import share_interval
-from evodesign.mechanics.scene import HUMAN, ROBOT, Grasp, Payload, Scene
+from evodesign.mechanics.payload import Grasp, Payload
+from evodesign.mechanics.scene import Scene
 from evodesign.problem.build import DesignProblem
 
 BOX = (0.5, 0.5, 0.1)

@@ -6,8 +6,8 @@ import casadi as ca
 import numpy as np
 import pytest
 
+from evodesign.mechanics.agent import SIDES, Agent
 from evodesign.mechanics.balance import AppliedWrench, cut
-from evodesign.mechanics.scene import SIDES, Agent
 from evodesign.problem.build import DesignProblem
 from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.symmetry import mirror_of

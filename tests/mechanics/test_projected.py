@@ -18,10 +18,12 @@ from evodesign.evaluation.evaluate import Evaluator
 from evodesign.human.anthropometry import Person
 from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
+from evodesign.mechanics.agent import HUMAN, ROBOT, SIDES, Agent
 from evodesign.mechanics.balance import GRAVITY, AppliedWrench, cut
 from evodesign.mechanics.coupled import PAYLOAD, CoupledModel, CoupledSystem, level_load
 from evodesign.mechanics.dynamics import bias, mass_matrix
 from evodesign.mechanics.floating_base import Configuration
+from evodesign.mechanics.payload import Grasp
 from evodesign.mechanics.projected import (
     center_of_pressure,
     constrained_accelerations,
@@ -29,7 +31,7 @@ from evodesign.mechanics.projected import (
     contact_wrenches,
     projected_torques,
 )
-from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Agent, Grasp, Scene
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import Program
 from evodesign.nlp.solver import RawSolution, Solver

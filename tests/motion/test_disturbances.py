@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from evodesign.evaluation.lift_json import lift_json
 from evodesign.evaluation.sensitivities import five_point
+from evodesign.mechanics.agent import SIDES
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, OverCases, PushedAt
-from evodesign.mechanics.scene import SIDES
 from evodesign.motion.derivative import LiftDerivative
 from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.lift_check import LiftChecker

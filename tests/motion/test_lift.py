@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError
 from evodesign.evaluation.sensitivities import five_point
+from evodesign.mechanics.agent import SIDES
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import SIDES
 from evodesign.motion.instant import KnotBlocks
 from evodesign.motion.lift_check import LiftChecker
 from evodesign.motion.lift_program import LiftProgram

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from evodesign.evaluation.precompute import precompute_setting
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.motion import lift_starts as trained
 from evodesign.motion.lift_program import LiftProgram, LiftStart
 from evodesign.motion.lift_starts import lift_portfolio

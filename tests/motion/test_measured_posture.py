@@ -9,7 +9,7 @@ import pytest
 
 from evodesign.human.coupled_joints import rhythms
 from evodesign.human.measured_posture import measured_posture
-from evodesign.mechanics.scene import HUMAN
+from evodesign.mechanics.agent import HUMAN
 from evodesign.motion.lifting import LiftProblem
 from evodesign.posture.check import AgentModel
 from evodesign.posture.formulations.base import Setting

@@ -15,7 +15,8 @@ import msgspec
 import tomli_w
 
 from evodesign.evaluation.evaluate import Evaluator
-from evodesign.mechanics.scene import Scene, StanceLimits
+from evodesign.mechanics.agent import StanceLimits
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.joint import JointPostures

@@ -18,7 +18,7 @@ from scipy.optimize import lsq_linear
 
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.hardware.actuators import Actuator
-from evodesign.mechanics.scene import Agent
+from evodesign.mechanics.agent import Agent
 from evodesign.nlp.program import Program
 from evodesign.nlp.solver import Multipliers, SolverCache
 from evodesign.posture.active_limits import LimitSlopes, priced

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.posture.check import AgentModel, Checker, sizes
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.codesign import JointProblem

@@ -12,9 +12,11 @@ import pytest
 
 from evodesign.design.parameter import EFFORT_RATIO, ROBOT_SHARE, DesignParameter, ParameterKind
 from evodesign.design.space import DesignSpace
+from evodesign.mechanics.agent import HUMAN, ROBOT, SIDES
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
-from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Scene
+from evodesign.mechanics.payload import Grasp
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.solver import Solver
 from evodesign.posture.allocation import EffortWeights, shared_scene
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker

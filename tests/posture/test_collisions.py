@@ -20,7 +20,7 @@ from evodesign.collision.scene_bodies import CheckedBodies, SceneBodies
 from evodesign.collision.supports import ConvexShape, shapes_of
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.sensitivities import Sensitivities
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.posture.allocation import EffortWeights

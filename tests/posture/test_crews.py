@@ -14,8 +14,10 @@ import pinocchio as pin
 import pytest
 
 from evodesign.errors import ModelError
+from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
-from evodesign.mechanics.scene import Agent, Grasp, Payload, Scene
+from evodesign.mechanics.payload import Grasp, Payload
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem, Symmetry

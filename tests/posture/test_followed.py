@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from evodesign.evaluation.evaluate import Evaluator
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.problem.build import DesignProblem

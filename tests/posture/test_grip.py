@@ -8,7 +8,9 @@ from dataclasses import replace
 import pytest
 
 from evodesign.human.coupled_joints import coupled_joints
-from evodesign.mechanics.scene import HUMAN, ROBOT, Gaze, GraspDirection, Scene
+from evodesign.mechanics.agent import HUMAN, ROBOT, Gaze
+from evodesign.mechanics.payload import GraspDirection
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker, sizes
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem

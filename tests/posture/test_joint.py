@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from evodesign.evaluation.evaluate import Evaluator
+from evodesign.mechanics.agent import HUMAN, ROBOT, SIDES
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import AgentPosture

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 from evodesign.errors import ModelError
+from evodesign.mechanics.agent import HUMAN, ROBOT, SIDES
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, OverCases, PushedAt
-from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Scene
+from evodesign.mechanics.payload import Grasp
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker
 from evodesign.posture.formulations.base import Setting

@@ -14,8 +14,9 @@ from evodesign.human.anthropometry import Person
 from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
 from evodesign.human.measured_posture import FEATURES, MARK, PostureRow, drawn_person, posture_rows
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.mechanics.floating_base import BodyState
-from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.assemble import CaseSymbols, Embodied, PostureMotion, assemble, free_hands_beside
 from evodesign.posture.check import AgentModel, Checker

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from evodesign.errors import InputError
+from evodesign.mechanics.agent import HUMAN, ROBOT, SIDES
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES, Grasp, Payload
+from evodesign.mechanics.payload import Grasp, Payload
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem, Symmetry

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from evodesign.human.coupled_joints import rhythms
-from evodesign.mechanics.scene import HUMAN, Scene
+from evodesign.mechanics.agent import HUMAN
+from evodesign.mechanics.scene import Scene
 from evodesign.motion.instant import KnotBlocks
 from evodesign.nlp.solver import Solver
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker

@@ -10,7 +10,8 @@ import pytest
 from evodesign.design.parameter import DesignParameter, ParameterKind
 from evodesign.design.space import DesignSpace
 from evodesign.errors import ModelError
-from evodesign.mechanics.scene import HUMAN, ROBOT, Payload
+from evodesign.mechanics.agent import HUMAN, ROBOT
+from evodesign.mechanics.payload import Payload
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.reach import ReachProblem

@@ -10,8 +10,8 @@ import pytest
 
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.sensitivities import Sensitivities
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.mechanics.disturbance import Disturbance, Disturbances
-from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.problem.build import DesignProblem
 from evodesign.quantities.design_result import DesignResult

@@ -12,8 +12,10 @@ from evodesign.human.anthropometry import Person, sole_size
 from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree
 from evodesign.human.strength import joint_strengths
+from evodesign.mechanics.agent import HUMAN, SIDES, Agent, Role, two_hands_two_feet
 from evodesign.mechanics.contact import SoleSize
-from evodesign.mechanics.scene import HUMAN, SIDES, Agent, Payload, Role, Scene, two_hands_two_feet
+from evodesign.mechanics.payload import Payload
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import JointKind

@@ -16,7 +16,7 @@ from evodesign.evaluation.clearance import solved_distances
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.evaluation_json import evaluation_json
 from evodesign.evaluation.simulations import simulated_holds
-from evodesign.mechanics.scene import Role
+from evodesign.mechanics.agent import Role
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.shipped import SHIPPED
 from evodesign.problem.source import source_of

@@ -15,7 +15,7 @@ from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.gradients import assessed_gradients
 from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.hardware.actuators import actuator_law
-from evodesign.mechanics.scene import ROBOT
+from evodesign.mechanics.agent import ROBOT
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.designs import designs_text, read_designs
 from evodesign.problem.model_json import model_json

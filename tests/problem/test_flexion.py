@@ -12,7 +12,7 @@ import pytest
 
 from evodesign.errors import InputError
 from evodesign.evaluation.evaluate import Evaluator
-from evodesign.mechanics.scene import ROBOT
+from evodesign.mechanics.agent import ROBOT
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.terms.floating_base import joint_ranges
 from evodesign.problem.build import DesignProblem, build_problem

@@ -14,8 +14,8 @@ from evodesign.evaluation.evaluate import Evaluator, case_outcome, detail_of
 from evodesign.evaluation.evaluation_json import evaluation_json
 from evodesign.evaluation.precompute import precompute_setting
 from evodesign.evaluation.sensitivities import Sensitivities
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.mechanics.disturbance import Disturbance, OverCases, PushedAt
-from evodesign.mechanics.scene import HUMAN, ROBOT
 from evodesign.posture.postures import Symmetry
 from evodesign.posture.precompute.keys import key_of
 from evodesign.posture.precompute.plan import stages

@@ -15,7 +15,7 @@ from evodesign.human.anthropometry import Person
 from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
 from evodesign.human.strength import joint_strengths
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.quantities.design_result import DesignResult
 from evodesign.quantities.objectives import objective_value

@@ -13,7 +13,7 @@ from evodesign.human.anthropometry import Person
 from evodesign.human.anthropometry_tables import Sex, ShoulderWidth
 from evodesign.human.body import DEFAULT_JOINTS, human_tree
 from evodesign.human.coupled_joints import coupled_joints, rhythms
-from evodesign.mechanics.scene import Grasp, GraspDirection
+from evodesign.mechanics.payload import Grasp, GraspDirection
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.codesign import JointProblem
 from evodesign.posture.formulations.joint import posture_program

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from evodesign.mechanics.scene import Grasp
+from evodesign.mechanics.payload import Grasp
 from evodesign.posture.postures import Symmetry
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source

@@ -11,7 +11,7 @@ import pytest
 
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError
-from evodesign.mechanics.scene import ROBOT
+from evodesign.mechanics.agent import ROBOT
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem, Symmetry

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from evodesign.errors import InputError
-from evodesign.mechanics.scene import Agent
+from evodesign.mechanics.agent import Agent
 from evodesign.problem.build import build_problem
 from evodesign.records import ProblemSource
 from tests.fuzz.input_cases import PROBLEM, ROBOT, TEXTS

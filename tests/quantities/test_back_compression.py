@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from evodesign.errors import InputError
+from evodesign.mechanics.agent import HUMAN, SIDES
 from evodesign.mechanics.lumbar_load import lumbar_load
-from evodesign.mechanics.scene import HUMAN, SIDES
 from evodesign.posture.check import AgentModel
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import build_problem

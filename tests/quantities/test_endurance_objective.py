@@ -11,7 +11,7 @@ import pytest
 from evodesign.errors import InputError
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.human.endurance import endurance
-from evodesign.mechanics.scene import HUMAN
+from evodesign.mechanics.agent import HUMAN
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.constraints import constraint_key
 from evodesign.problem.file import ProblemFile

@@ -15,8 +15,8 @@ from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree
 from evodesign.human.endurance import endurance
 from evodesign.human.niosh import Coupling
 from evodesign.human.strength import joint_strengths
+from evodesign.mechanics.agent import HUMAN, Agent, Role, two_hands_two_feet
 from evodesign.mechanics.contact import SoleSize
-from evodesign.mechanics.scene import HUMAN, Agent, Role, two_hands_two_feet
 from evodesign.posture.check import AgentModel
 from evodesign.posture.results import AgentPosture
 from evodesign.quantities.ergonomics import ergonomics, ergonomics_json

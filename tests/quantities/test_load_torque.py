@@ -9,7 +9,7 @@ import pytest
 from scipy.linalg import null_space
 
 from evodesign.evaluation.evaluate import Evaluator
-from evodesign.mechanics.scene import HUMAN, SIDES
+from evodesign.mechanics.agent import HUMAN, SIDES
 from evodesign.posture.check import AgentModel
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem

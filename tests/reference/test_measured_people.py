@@ -23,9 +23,11 @@ from evodesign.human.anthropometry_tables import Sex, ShoulderWidth
 from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree
 from evodesign.human.coupled_joints import rhythms
 from evodesign.human.measured_posture import MARK, measured_posture
+from evodesign.mechanics.agent import HUMAN, ROBOT, Agent, Role, two_hands_two_feet
 from evodesign.mechanics.contact import SoleSize
 from evodesign.mechanics.floating_base import ROOT, BodyState, Configuration, FloatingBody
-from evodesign.mechanics.scene import HUMAN, ROBOT, Agent, Payload, Role, Scene, two_hands_two_feet
+from evodesign.mechanics.payload import Payload
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.check import AgentModel

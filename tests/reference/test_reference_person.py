@@ -28,8 +28,8 @@ from evodesign.evaluation.evaluate import Evaluator
 from evodesign.human.anthropometry import Person
 from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import DEFAULT_JOINTS, human_tree
+from evodesign.mechanics.agent import HUMAN, SIDES
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import HUMAN, SIDES
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source
 from evodesign.records import ProblemSource, Status

@@ -8,7 +8,8 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from evodesign.mechanics.scene import Agent, Scene
+from evodesign.mechanics.agent import Agent
+from evodesign.mechanics.scene import Scene
 from evodesign.problem.build import DesignProblem
 from evodesign.records import AgentDetail, CaseDetail, CaseOutcome, Detail, Hold, InstantDetail
 from evodesign.report.scene_models import PlacedScene, SceneModels, SceneSet, placed_scene

@@ -8,7 +8,7 @@ import pytest
 
 from evodesign.body.placement import Placement
 from evodesign.evaluation.logged_posture import logged_posture
-from evodesign.mechanics.scene import HUMAN, ROBOT, SIDES
+from evodesign.mechanics.agent import HUMAN, ROBOT, SIDES
 from evodesign.posture.check import AgentModel
 from evodesign.problem.build import DesignProblem
 from evodesign.report.scene_models import LOAD, ContactWrench, PlacedScene, placed_scene

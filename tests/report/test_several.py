@@ -22,7 +22,7 @@ from evodesign.analysis.conditions import conditions, meeting, quantities
 from evodesign.evaluation.logged_posture import logged_posture
 from evodesign.evaluation.progress import SILENT
 from evodesign.human.body import human_tree
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.posture.check import AgentModel
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Detail

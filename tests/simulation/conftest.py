@@ -8,7 +8,8 @@ from functools import cache
 
 import pytest
 
-from evodesign.mechanics.scene import Grasp, Scene
+from evodesign.mechanics.payload import Grasp
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem, Symmetry

@@ -12,7 +12,8 @@ import pinocchio as pin
 import pytest
 
 from evodesign.hardware.actuators import actuator_law
-from evodesign.mechanics.scene import SIDES, Grasp
+from evodesign.mechanics.agent import SIDES
+from evodesign.mechanics.payload import Grasp
 from evodesign.simulation.feedback import joint_inertias
 from evodesign.simulation.model import SimulatedScene, simulated_scene
 from evodesign.tree.equip import with_actuators

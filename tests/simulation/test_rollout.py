@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from evodesign.errors import InputError
-from evodesign.mechanics.scene import SIDES, Grasp
+from evodesign.mechanics.agent import SIDES
+from evodesign.mechanics.payload import Grasp
 from evodesign.posture.results import AgentPosture
 from evodesign.simulation.feedback import Feedback
 from evodesign.simulation.model import STEP

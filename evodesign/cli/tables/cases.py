@@ -9,7 +9,7 @@ from rich.markup import escape
 from evodesign.cli.output import markup, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.errors import on_one_line
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.records import Assessment, CaseOutcome, Lift
 
 ALONE = ("height [m]", "robot |tau| [N m]", "human |tau| [N m]", "iterations", "residual")

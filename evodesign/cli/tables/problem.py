@@ -13,7 +13,7 @@ from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.collision.pairs import JOINED, STILL
 from evodesign.errors import on_one_line
 from evodesign.guess.preflight import Finding
-from evodesign.mechanics.scene import ROBOT
+from evodesign.mechanics.agent import ROBOT
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.inertia_rules import RuleDifference
 from evodesign.problem.model_json import model_json

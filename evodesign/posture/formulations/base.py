@@ -14,7 +14,9 @@ from evodesign.body.placement import Scalar
 from evodesign.design.space import DesignSpace
 from evodesign.human.measured_posture import MeasuredPosture
 from evodesign.identity import Exceptions, digest
-from evodesign.mechanics.scene import Agent, Payload, Role, Scene
+from evodesign.mechanics.agent import Agent, Role
+from evodesign.mechanics.payload import Payload
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.method import SolverOptions
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.assemble import Embodied

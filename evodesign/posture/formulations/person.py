@@ -15,7 +15,8 @@ from typing import Any
 
 import casadi as ca
 
-from evodesign.mechanics.scene import HUMAN, ROBOT, Scene
+from evodesign.mechanics.agent import HUMAN, ROBOT
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.program import Array, ConstraintBlock, Program
 from evodesign.nlp.solver import RawSolution, Solver, SolverCache

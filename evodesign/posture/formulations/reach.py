@@ -23,7 +23,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from evodesign.mechanics.scene import ROBOT, Scene
+from evodesign.mechanics.agent import ROBOT
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.nlp.program import ConstraintBlock, Program, Start, Variable

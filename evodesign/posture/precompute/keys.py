@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from evodesign.identity import Exceptions, Met, code_digest, digest
-from evodesign.mechanics.scene import Agent, Payload, scene_of
+from evodesign.mechanics.agent import Agent
+from evodesign.mechanics.payload import Payload
+from evodesign.mechanics.scene import scene_of
 from evodesign.nlp.method import SolverOptions
 from evodesign.posture.precompute.plan import (
     Piece,

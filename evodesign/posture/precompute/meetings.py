@@ -13,7 +13,8 @@ from itertools import islice, product
 
 from evodesign.collision.rules import BodyPair, CollisionRules
 from evodesign.design.spread import spread_designs
-from evodesign.mechanics.scene import ROBOT, Agent, Scene
+from evodesign.mechanics.agent import ROBOT, Agent
+from evodesign.mechanics.scene import Scene
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.check import AgentModel, Checker, near_bodies, own_pairs
 from evodesign.posture.design_checkers import can_be_built

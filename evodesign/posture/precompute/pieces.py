@@ -16,7 +16,8 @@ import numpy as np
 
 from evodesign.collision.rules import BodyPair
 from evodesign.design.spread import spread_designs
-from evodesign.mechanics.scene import HUMAN, Scene, scene_of
+from evodesign.mechanics.agent import HUMAN
+from evodesign.mechanics.scene import Scene, scene_of
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from evodesign.mechanics.scene import Role
+from evodesign.mechanics.agent import Role
 from evodesign.nlp.program import Program
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.assemble import Slot

@@ -21,10 +21,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.collision.scene_bodies import SceneBodies
+from evodesign.mechanics.agent import Agent, Contact
 from evodesign.mechanics.balance import AppliedWrench
 from evodesign.mechanics.disturbance import Disturbance
 from evodesign.mechanics.floating_base import BodyState
-from evodesign.mechanics.scene import Agent, Contact, Payload, Scene
+from evodesign.mechanics.payload import Payload
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import WRENCH, Form, both_sides

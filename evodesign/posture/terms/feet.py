@@ -15,8 +15,9 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 
+from evodesign.mechanics.agent import Role
 from evodesign.mechanics.contact import SoleSize, foot_margins
-from evodesign.mechanics.scene import Role, Scene
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import (

@@ -12,8 +12,8 @@ from itertools import product
 import casadi as ca
 import numpy as np
 
+from evodesign.mechanics.agent import TO_THE_LEFT, Contact
 from evodesign.mechanics.contact import SoleSize
-from evodesign.mechanics.scene import TO_THE_LEFT, Contact
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.terms.base import Body, BodyTerm, Bound, MeasuredBody, Residual, Row
 from evodesign.tree.kinematics import Expression

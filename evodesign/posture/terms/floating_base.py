@@ -11,7 +11,8 @@ from collections.abc import Iterator, Sequence
 import casadi as ca
 import numpy as np
 
-from evodesign.mechanics.scene import Agent, Scene
+from evodesign.mechanics.agent import Agent
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import BodyTerm, Bound, MeasuredBody, Residual, Unknown, both_ways

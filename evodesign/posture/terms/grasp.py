@@ -13,7 +13,9 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 
-from evodesign.mechanics.scene import Contact, Grasp, Payload, Scene
+from evodesign.mechanics.agent import Contact
+from evodesign.mechanics.payload import Grasp, Payload
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import (

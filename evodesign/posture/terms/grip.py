@@ -15,8 +15,9 @@ import casadi as ca
 import numpy as np
 
 from evodesign.body.placement import Vector
+from evodesign.mechanics.agent import Agent, Contact
 from evodesign.mechanics.elbow import Elbow, elbow
-from evodesign.mechanics.scene import Agent, Contact, Payload
+from evodesign.mechanics.payload import Payload
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.terms.base import Body, BodyTerm, Bound, MeasuredBody, Residual, Row
 from evodesign.tree.kinematics import vector

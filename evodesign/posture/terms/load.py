@@ -27,9 +27,11 @@ import casadi as ca
 import numpy as np
 import pinocchio as pin
 
+from evodesign.mechanics.agent import Agent, Role
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.disturbance import Disturbance, PushedAt
-from evodesign.mechanics.scene import Agent, Grasp, Role, Scene
+from evodesign.mechanics.payload import Grasp
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.terms.base import (
     UNDISTURBED,

@@ -25,7 +25,8 @@ import numpy as np
 
 from evodesign.body.placement import Placement
 from evodesign.human.measured_posture import FEATURES, MARK, MEAN_PERSON, SIDES, SPINE, Gaussians
-from evodesign.mechanics.scene import Agent, Scene
+from evodesign.mechanics.agent import Agent
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.terms.base import Body, BodyTerm, Expression
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree

@@ -20,8 +20,8 @@ import casadi as ca
 
 from evodesign.design.parameter import ParameterKind
 from evodesign.design.space import DesignSpace
+from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.balance import standing_height_of_mass
-from evodesign.mechanics.scene import Agent
 from evodesign.tree.kinematics import Expression
 from evodesign.tree.model import Tree
 

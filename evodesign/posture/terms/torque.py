@@ -19,9 +19,10 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.balance import AppliedWrench, cut
 from evodesign.mechanics.floating_base import ROOT, BodyState
-from evodesign.mechanics.scene import Agent, Scene
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.base import (

@@ -14,7 +14,7 @@ from typing import Any
 
 import msgspec
 
-from evodesign.mechanics.scene import Agent
+from evodesign.mechanics.agent import Agent
 from evodesign.records import (
     CaseDetail,
     CaseOutcome,

@@ -15,8 +15,8 @@ import msgspec
 from evodesign.errors import InputError, ModelError
 from evodesign.evaluation.progress import SILENT, PrecomputeProgress
 from evodesign.files import write_folder
+from evodesign.mechanics.agent import ROBOT
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.scene import ROBOT
 from evodesign.report.export.design import ExportedDesign, design_json, postures_csv, wrenches_csv
 from evodesign.report.export.readme import MESHES, readme_text
 from evodesign.report.opened_design import open_design

@@ -29,7 +29,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.report.figures.faces import faces_of
 from evodesign.report.figures.mesh_faces import in_world, seen_triangles
 from evodesign.report.figures.paint import AGENTS, GROUND_FORCE, HAND_FORCE, INK, PALE, new_figure

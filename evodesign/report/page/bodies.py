@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Shape
-from evodesign.mechanics.scene import Agent
+from evodesign.mechanics.agent import Agent
 from evodesign.problem.build import DesignProblem
 from evodesign.report.page.content import (
     Bodies,

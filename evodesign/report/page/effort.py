@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from evodesign.human.back import ACTION_LIMIT
-from evodesign.mechanics.scene import HUMAN, Scene, scene_of
+from evodesign.mechanics.agent import HUMAN
+from evodesign.mechanics.scene import Scene, scene_of
 from evodesign.quantities.ergonomics import ergonomics
 from evodesign.records import CaseDetail
 from evodesign.report.page.content import EffortContent

@@ -7,8 +7,9 @@ from dataclasses import replace
 from functools import cached_property
 
 from evodesign.evaluation.logged_posture import logged_posture
+from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.floating_base import ROOT
-from evodesign.mechanics.scene import Agent, Scene
+from evodesign.mechanics.scene import Scene
 from evodesign.posture.check import AgentModel
 from evodesign.posture.terms.torque import asked
 from evodesign.records import CaseDetail, InstantDetail, Lift

@@ -11,7 +11,7 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.records import CaseDetail
 from evodesign.report.replay.messages import WORLD, frame_id
 from evodesign.report.replay.recording import several, time_scale

@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError
 from evodesign.evaluation.simulations import SimulatedCase
-from evodesign.mechanics.scene import Agent
+from evodesign.mechanics.agent import Agent
 from evodesign.records import AgentDetail, Case, CaseDetail, InstantDetail
 from evodesign.report.replay.recording import NANOSECONDS, Frame, write_frames
 from evodesign.report.scene_models import SceneSet, placed_scene

@@ -16,7 +16,7 @@ from foxglove_schemas_protobuf.TriangleListPrimitive_pb2 import TriangleListPrim
 from google.protobuf.timestamp_pb2 import Timestamp
 
 from evodesign.body.placement import Placement
-from evodesign.mechanics.scene import ROBOT
+from evodesign.mechanics.agent import ROBOT
 from evodesign.report.replay.messages import TOPICS, color_of, frame_id, pose_of
 from evodesign.report.scene_models import SceneSet
 from evodesign.tree.mesh_write import triangles_of, vertices_of

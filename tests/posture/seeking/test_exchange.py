@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.nlp.program import Program, Start
 from evodesign.nlp.solver import RawSolution
 from evodesign.posture.allocation import EffortWeights

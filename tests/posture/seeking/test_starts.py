@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.nlp.program import Program, Variable
 from evodesign.posture.assemble import Slot
 from evodesign.posture.seeking.starts import universal_starts

@@ -15,7 +15,7 @@ from mcap.reader import make_reader
 
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError
-from evodesign.mechanics.scene import ROBOT, SIDES
+from evodesign.mechanics.agent import ROBOT, SIDES
 from evodesign.problem.build import DesignProblem
 from evodesign.records import (
     FORMAT_VERSION,

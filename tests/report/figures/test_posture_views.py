@@ -7,7 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.problem.build import DesignProblem
 from evodesign.report.figures.posture_views import FRONT, SIDE, alone, front_figure, side_figure
 from evodesign.report.scene_models import PlacedScene

@@ -12,7 +12,7 @@ import msgspec
 import pytest
 
 from evodesign.analysis.front import front
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.problem.build import DesignProblem
 from evodesign.records import AgentDetail, Objective, Sense
 from evodesign.report.page import page_content, page_html

@@ -11,7 +11,7 @@ import msgspec
 import pytest
 
 from evodesign.human.back import ACTION_LIMIT
-from evodesign.mechanics.scene import HUMAN
+from evodesign.mechanics.agent import HUMAN
 from evodesign.problem.build import DesignProblem
 from evodesign.quantities.ergonomics import ergonomics
 from evodesign.report.page import page_content, page_html

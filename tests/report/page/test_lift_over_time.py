@@ -13,8 +13,8 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from evodesign.mechanics.agent import SIDES, Agent
 from evodesign.mechanics.balance import AppliedWrench, cut
-from evodesign.mechanics.scene import SIDES, Agent
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source
 from evodesign.records import (

@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from evodesign.mechanics.scene import ROBOT
+from evodesign.mechanics.agent import ROBOT
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source
 from evodesign.records import Detail

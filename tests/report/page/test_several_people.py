@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import pytest
 
 from evodesign.human.body import human_tree
-from evodesign.mechanics.scene import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.problem.build import DesignProblem
 from evodesign.report.page import page_content, page_html
 from evodesign.runlog.run import RunLog
