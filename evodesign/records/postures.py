@@ -226,11 +226,11 @@ class CaseDetail(Record, frozen=True, omit_defaults=True):
     def hardest(self) -> CaseDetail:
         """The moment at which the person's torques [N m] are largest; the only one of a load held still."""
 
-        def strain(moment: CaseDetail) -> float:
+        def persons_torque(moment: CaseDetail) -> float:
             person = moment.agents.get("human")
             return 0.0 if person is None else person.torque_norm_n_m
 
-        return max(self.moments, key=strain)
+        return max(self.moments, key=persons_torque)
 
     def thinned(self, most: int) -> CaseDetail:
         """The same with so many instants at most: both ends, and what lies evenly between."""
