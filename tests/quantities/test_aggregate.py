@@ -126,7 +126,7 @@ def test_other_ways_over_cases_are_no_objectives(name: str) -> None:
         ([TALL, SHORT.replace("sex", "sexe")], [LIGHT], "human[1].sexe: wanted one of the keys"),
         ([TALL], [LIGHT, HEAVY.replace("15.0", "-1.0")], "payload[1].mass_kg: wanted"),
         ([TALL], [LIGHT, HEAVY + "center_of_mass_m = [0.0, 0.0, 1.0]\n"], "payload[1].center_of_mass_m[2]"),
-        ([], [LIGHT], "human: wanted"),
+        ([], [LIGHT], "wanted a [human] for 'human_torque'"),
     ],
 )
 def test_one_of_several_people_or_loads_is_refused_by_its_place(
