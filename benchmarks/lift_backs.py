@@ -84,13 +84,13 @@ def figures(result: DesignResult, posed: PosedPerson) -> Mapping[str, float | st
     (solution,) = result.cases
     if not solution.solved:
         return {"status": str(solution.status), "reason": solution.reason}
-    scene, load = result.scene_of(solution.case), LOAD * GRAVITY
-    peak = max(solution.instants, key=lambda instant: l5s1_moment(scene, instant.postures))
+    person, load = result.scene_of(solution.case).human, LOAD * GRAVITY
+    peak = max(solution.instants, key=lambda instant: l5s1_moment(person, instant.postures[HUMAN]))
     resting = [posed.posed(instant.postures[HUMAN], load).moments["l5s1"] for instant in solution.instants]
     there = posed.posed(peak.postures[HUMAN], load)
     return {
         "status": str(solution.status),
-        "peak_n_m": l5s1_moment(scene, peak.postures),
+        "peak_n_m": l5s1_moment(person, peak.postures[HUMAN]),
         "peak_of_statics_n_m": max(resting),
         "statics_at_peak_n_m": there.moments["l5s1"],
         "seconds_at_peak": peak.time,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
@@ -11,10 +12,25 @@ BodyPair = tuple[str, str]
 """Names of two links; the second may be the load, the floor or the partner."""
 
 LOAD, FLOOR, PARTNER = "load", "floor", "partner"
-"""What a link may meet beside other links: the partner's side begins half-way between robot and person."""
+"""What a link may meet beside other links; a partner is anybody else who holds the load."""
 
-PLANES: Mapping[str, Vector] = {FLOOR: (0.0, 0.0, -1.0), PARTNER: (1.0, 0.0, 0.0)}
-"""Planes through the origin, by the direction towards their other side."""
+PLANES = (FLOOR, PARTNER)
+"""Those of them that planes through the origin part from an agent."""
+
+
+def partner_side(size: Vector, quarters: int) -> Vector:
+    """Direction towards a partner's side of the plane that parts both, a unit vector in the agent's frame.
+
+    The plane is half-way between two who face each other, and cuts through the load's edge between two who
+    stand at neighbouring sides.
+
+    Args:
+        size: depth, width and height of the load as the agent sees it [m].
+        quarters: quarter turns from the agent's frame to the partner's.
+    """
+    depth, width, _ = size
+    x, y = {1: (width, -depth), 2: (1.0, 0.0), 3: (width, depth)}[quarters % 4]
+    return (x / math.hypot(x, y), y / math.hypot(x, y), 0.0)
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,7 +25,8 @@ from evodesign.mechanics.agent import ROBOT, Agent
 from evodesign.mechanics.stance_case import StanceCase
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem
-from evodesign.quantities.hardware_quantities import StanceModel, link_safety
+from evodesign.quantities.hardware_quantities import link_safety
+from evodesign.quantities.stance_model import StanceModel
 from evodesign.records import CaseDetail
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.model import Tree

@@ -19,7 +19,7 @@ from evodesign.collision.rules import LOAD
 from evodesign.collision.shapes import box_solid
 from evodesign.errors import RunError, on_one_line
 from evodesign.evaluation.evaluate import detail_of
-from evodesign.mechanics.agent import HUMAN, Agent, Role
+from evodesign.mechanics.agent import HUMAN, Agent
 from evodesign.mechanics.scene import Scene
 from evodesign.quantities.design_result import DesignResult
 from evodesign.records import AgentDetail, Case, CaseDetail
@@ -47,7 +47,10 @@ class Clearances:
         self._own: dict[int, Pairs] = {}
         self._places: dict[tuple[str, str], Places] = {}
         self._people = {
-            id(person.tree): SolidBodies.of_tree(person.tree) for scene in scenes for person in scene.people
+            id(agent.tree): SolidBodies.of_tree(agent.tree)
+            for scene in scenes
+            for agent in scene.agents
+            if not agent.designed
         }
 
     def of(self, robot: Tree, cases: Sequence[CaseDetail]) -> list[BodyDistance]:
@@ -68,7 +71,7 @@ class Clearances:
         if scene is None or case.agents.keys() != {agent.name for agent in scene.agents}:
             name = on_one_line(case.case.name)
             raise RunError(f"the logged postures of case '{name}' are not those of the run's problem")
-        trees = {agent.name: robot if agent.role is Role.ROBOT else agent.tree for agent in scene.agents}
+        trees = {agent.name: robot if agent.designed else agent.tree for agent in scene.agents}
         own = {name: self._people.get(id(tree), solids) for name, tree in trees.items()}
         load = SolidBodies((LOAD,), (box_solid(Box(*scene.payload.size)),))
         middle = Placement(translation=(0.0, 0.0, case.height_m))

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from itertools import product
 
 from evodesign.collision.clearance import BodyDistance
 from evodesign.collision.zero_posture import built_in_slack
@@ -22,15 +23,17 @@ from evodesign.mechanics.stance_case import StanceTorques
 from evodesign.nlp.program import Start
 from evodesign.posture.allocation import shared_scene
 from evodesign.posture.check import AgentModel, Checker, Unchecked
+from evodesign.posture.design_checkers import with_hardware
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, Reach, common_reach
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.problem.build import DesignProblem
 from evodesign.quantities.demand import SizedRobot
 from evodesign.quantities.design_result import DesignResult
-from evodesign.quantities.hardware_quantities import StanceModel
+from evodesign.quantities.stance_model import StanceModel
 from evodesign.records import Case, Hold, Lift, Status
 from evodesign.tree.equip import mounted_solids
+from evodesign.tree.model import Tree
 
 Cases = tuple[CaseSolution, ...]
 
@@ -49,10 +52,12 @@ class DesignSolver:
 
     def __init__(self, problem: DesignProblem, known: Precomputed, inner: InnerProblems) -> None:
         self.problem, self.known, self.inner = problem, known, inner
-        robot, space = problem.scene.robot, problem.space
-        self.family = space.family(robot.tree)
+        scene, space = problem.scene, problem.space
+        self.family = space.family(scene.robot.tree)
         self.tree = self.family.tree
-        self.robot = AgentModel.of(robot, self.tree)
+        self.robots = tuple(
+            AgentModel.of(robot, self.tree if robot.designed else robot.tree) for robot in scene.robots
+        )
         self.people = {
             scene.pair[0]: tuple(AgentModel.of(person, person.tree) for person in scene.people)
             for scene in problem.scenes
@@ -68,6 +73,11 @@ class DesignSolver:
             return design.result(values)
         result = sized_result(self.problem.space, values, design.sized_robot, design, self.usual)
         return replace(result, values=tuple(values), rated=tuple(result.values))
+
+    @property
+    def robot(self) -> AgentModel:
+        """The first one, which designs change."""
+        return self.robots[0]
 
     @cached_property
     def usual(self) -> Mapping[str, float]:
@@ -111,7 +121,8 @@ class _OneDesign:
     def __init__(self, solver: DesignSolver, values: Sequence[float]) -> None:
         self._solver, self._problem, self._values = solver, solver.problem, values
         self._tree = solver.family.without_actuators(values)
-        self._robot = solver.robot.resized(self._tree)
+        self._robots = with_hardware(solver.robots, self._tree)
+        self._robot = self._robots[0]
 
     @property
     def built_in_overlap(self) -> BodyDistance | None:
@@ -168,15 +179,19 @@ class _OneDesign:
         """
         problem, solver = self._problem, self._solver
         tree = problem.space.with_actuators(self._tree, values)
-        robot = self._robot.driven(tree) if problem.space.driven else self._robot
+        robots = self._driven(tree) if problem.space.driven else self._robots
         reach = self._reach(values)
-        check = Checker(problem.scene, robot, *solver.people[problem.scene.pair[0]])
+        check = Checker(problem.scene, *robots, *solver.people[problem.scene.pair[0]])
         return self._of_cases(values, reach, self._cases(values, reach, check, before))
+
+    def _driven(self, tree: Tree) -> tuple[AgentModel, ...]:
+        """The robots with the actuators of a tree, which hold what they can, if designs change them."""
+        return tuple(each.driven(tree) if each.agent.designed else each for each in self._robots)
 
     def _of_cases(self, values: Sequence[float], reach: Reach, cases: Cases) -> DesignResult:
         problem, solver = self._problem, self._solver
         tree, alone = problem.space.with_actuators(self._tree, values), solver.alone
-        robot = self._robot.driven(tree) if problem.space.driven else self._robot
+        robot = self._driven(tree)[0] if problem.space.driven else self._robot
         body = robot.body if alone.body is solver.robot.body else None
         return DesignResult(
             scenes=problem.scenes,
@@ -323,9 +338,15 @@ class _OneDesign:
         )
 
     def _at_ends_of_reach(self, values: Sequence[float], case: Case) -> list[Start]:
-        """How the robot holds the highest and the lowest load that are asked for, where that is known."""
-        reached = self._solver.inner.reaches[case.payload]
-        return [start for sense in (HIGHEST, LOWEST) for start in reached.extreme_posture(values, sense)]
+        """How robots hold the highest and the lowest load that are asked for, where that is known."""
+        reaches = self._solver.inner.reaches.items()
+        own = [reached for (payload, _), reached in reaches if payload == case.payload]
+        found = ([each.extreme_posture(values, sense) for each in own] for sense in (HIGHEST, LOWEST))
+        return [
+            {name: value for part in parts for name, value in part.items()}
+            for all_robots in found
+            for parts in product(*all_robots)
+        ]
 
     def _elsewhere(self, found: Sequence[CaseSolution], case: Case) -> list[Neighbour]:
         """Solutions of other tasks, those at the nearest heights first."""

@@ -5,6 +5,7 @@ An evaluation depends on problem and design alone: no state is carried from one 
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -193,7 +194,8 @@ def case_outcome(solution: CaseSolution, *, native: bool = False) -> CaseOutcome
             largest = norms.setdefault(load_case, dict.fromkeys(postures, 0.0))
             for name, posture in postures.items():
                 largest[name] = max(largest[name], posture.torque_norm)
-    undisturbed = norms.pop(UNDISTURBED, {})
+    together = {load_case: norms_by_role(largest) for load_case, largest in norms.items()}
+    undisturbed = together.pop(UNDISTURBED, {})
     return CaseOutcome(
         case=solution.case,
         status=solution.status,
@@ -203,8 +205,14 @@ def case_outcome(solution: CaseSolution, *, native: bool = False) -> CaseOutcome
         iterations=sum(attempt.iterations for attempt in solution.attempts),
         fallbacks=sum(each.method is MethodName.IPOPT for each in solution.attempts) if native else 0,
         residual=max(solution.residuals.values()) if solution.solved else None,
-        disturbed=norms,
+        disturbed=together,
     )
+
+
+def norms_by_role(norms: Mapping[str, float]) -> dict[str, float]:
+    """|tau|_2 of all robots, and of all people who hold a load, from those of each by name [N m]."""
+    found = {role: [norm for name, norm in norms.items() if name.startswith(role)] for role in (ROBOT, HUMAN)}
+    return {role: own[0] if len(own) == 1 else math.hypot(*own) for role, own in found.items() if own}
 
 
 def detail_of(solution: CaseSolution, limits: tuple[ActiveLimit, ...] = ()) -> CaseDetail:

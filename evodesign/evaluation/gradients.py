@@ -32,13 +32,18 @@ from evodesign.posture.formulations.reach import HIGHEST, LOWEST
 from evodesign.posture.results import AgentPosture, Instant
 from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import DesignProblem
-from evodesign.quantities.design_result import WORST, CaseQuantity, DesignResult, PostureSlopes
+from evodesign.quantities.design_result import (
+    WORST,
+    CaseQuantity,
+    DesignResult,
+    PostureSlopes,
+    mean_over_time,
+)
 from evodesign.quantities.motion_quantities import (
     ENDURANCE,
     ENERGY,
     LEAST_TIME,
     POWER,
-    mean_over_time,
 )
 from evodesign.quantities.objectives import QUANTITIES, REACH, SHARED_REACH, objective_value, split_name
 from evodesign.quantities.person_quantities import HOLDING_TIME

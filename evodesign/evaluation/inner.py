@@ -22,12 +22,12 @@ class InnerProblems:
 
     Args:
         postures: by names of person and load.
-        reaches: by label of the load.
+        reaches: by label of the load and name of the robot.
         lifts: by names of person and load.
     """
 
     postures: Mapping[tuple[str, str], PostureProblem]
-    reaches: Mapping[str, ReachProblem]
+    reaches: Mapping[tuple[str, str], ReachProblem]
     lifts: Mapping[tuple[str, str], LiftProblem]
 
 
@@ -49,10 +49,11 @@ def inner_problems(
             for setting in settings
         },
         reaches={
-            setting.scene.payload.label: ReachProblem(
-                setting, symmetric=symmetric, known=known, solvers=solvers
+            (setting.scene.payload.label, robot.name): ReachProblem(
+                setting, robot.name, symmetric=symmetric, known=known, solvers=solvers
             )
             for setting in settings
+            for robot in setting.scene.robots
         },
         lifts={
             setting.scene.pair: LiftProblem(setting, symmetric=symmetric, timed=timed) for setting in settings

@@ -9,7 +9,6 @@ import msgspec
 
 from evodesign.errors import InputError
 from evodesign.evaluation.logged_posture import logged_posture
-from evodesign.mechanics.agent import Role
 from evodesign.mechanics.scene import Scene, scene_of
 from evodesign.motion.solution import LiftSolution
 from evodesign.records import CaseDetail
@@ -134,6 +133,6 @@ def _lift_name(lift: Lift) -> str:
 
 
 def _followed(scene: Scene, name: str, robot: Tree, plan: Plan, feedback: Feedback) -> SimulatedCase:
-    trees = {each.name: robot if each.role is Role.ROBOT else each.tree for each in scene.agents}
+    trees = {each.name: robot if each.designed else each.tree for each in scene.agents}
     rollout = rolled_out(scene.undisturbed, trees, plan, feedback)
     return SimulatedCase(scene, name, trees, plan, rollout, outcome_of(plan, rollout))

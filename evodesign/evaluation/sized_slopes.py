@@ -28,7 +28,7 @@ from evodesign.nlp.sensitivity import Limit, LimitTable
 from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
 from evodesign.quantities.demand import Demand
 from evodesign.quantities.design_result import DesignResult
-from evodesign.quantities.hardware_quantities import StanceModel
+from evodesign.quantities.stance_model import StanceModel
 
 CaseDerivative = PostureDerivative | LiftDerivative
 """Of a load held still, or of a lift."""

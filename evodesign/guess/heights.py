@@ -21,7 +21,7 @@ from evodesign.body.placement import Placement
 from evodesign.errors import InputError
 from evodesign.evaluation.inner import inner_problems
 from evodesign.mechanics.agent import Agent
-from evodesign.posture.formulations.reach import person_reach
+from evodesign.posture.formulations.reach import people_reach
 from evodesign.posture.postures import Symmetry
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.records import ProblemSource
@@ -94,7 +94,7 @@ def _ends(problem: DesignProblem) -> list[tuple[float, float] | None]:
     unscaled = problem.space.unscaled(robot.tree)
     symmetric = problem.symmetry is not Symmetry.OFF
     reaches = [each.solve(unscaled) for each in inner_problems(alone).reaches.values()]
-    people = [person_reach(scene, problem.options, symmetric=symmetric) for scene in scenes]
+    people = [people_reach(scene, problem.options, symmetric=symmetric) for scene in scenes]
     return [None if each is None else _both(each.lowest, each.highest) for each in (*reaches, *people)]
 
 

@@ -121,7 +121,7 @@ def _faces(problem: DesignProblem) -> str:
     if plan.facing in (Facing.FORWARD, None):
         return plan.why
     tables = decode_toml(problem.source.text, problem.source.path, ProblemFile)
-    ahead = rotate(tables.robot.facing.axes, plan.facing.ahead)
+    ahead = rotate(tables.designed.facing.axes, plan.facing.ahead)
     remedy = next(each for each in Facing if math.dist(each.ahead, ahead) < 0.5)
     found = f"a robot that looks along {plan.facing}: {plan.why}"
     raise InputError("robot.facing", "", f'"{remedy}"', found)
@@ -200,10 +200,11 @@ def _holds(problem: DesignProblem) -> str:
     options = replace(problem.options, compiled=False)
     scene, robot = problem.scene, problem.scene.robot
     frames = (*(contact.frame for contact in robot.contacts), *robot.trunk)
-    bare = replace(robot, tree=without_frames(robot.tree, frames), collisions=None)
+    bare, free = without_frames(robot.tree, frames), [replace(each, collisions=None) for each in scene.agents]
+    agents = (replace(each, tree=bare) if each.designed else each for each in free)
     alone = replace(
         problem,
-        scenes=(scene.with_agents(*(replace(each, collisions=None) for each in scene.people), bare),),
+        scenes=(scene.with_agents(*agents),),
         options=options,
         start_portfolio=False,
         whole_reach=True,

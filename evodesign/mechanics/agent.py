@@ -23,7 +23,7 @@ from evodesign.mechanics.contact import SoleSize
 from evodesign.tree.model import Tree
 
 ROBOT, HUMAN = "robot", "human"
-"""Names of the robot and of the person where there is one of each."""
+"""Names of the first robot and the first person; those of others begin with them."""
 
 SIDES = ("left", "right")
 
@@ -154,6 +154,7 @@ class Agent:
         measured: what its posture is drawn to; None: torques alone decide.
         stance: limits of its postures; None: those of the scene.
         quarters: quarter turns about z that take its frame to the world.
+        as_drawn: whether it stays as its file has it, whatever a design changes of robots.
     """
 
     name: str
@@ -174,6 +175,12 @@ class Agent:
     measured: MeasuredPosture | None = None
     stance: StanceLimits | None = None
     quarters: int = 0
+    as_drawn: bool = False
+
+    @property
+    def designed(self) -> bool:
+        """Whether designs change it."""
+        return self.role is Role.ROBOT and not self.as_drawn
 
     @property
     def feet(self) -> tuple[Contact, ...]:
@@ -214,6 +221,12 @@ class Agent:
         """That rotation as a matrix, exact."""
         cos, sin = QUARTERS[self.quarters % 4]
         return np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+
+    def to_world(self, vector: Vector) -> Vector:
+        """A vector of numbers in the world's frame, from one in the agent's."""
+        x, y, z = vector
+        cos, sin = QUARTERS[self.quarters % 4]
+        return (cos * x - sin * y, sin * x + cos * y, z)
 
     def from_world(self, vector: Vector) -> Vector:
         """A vector of numbers in the agent's frame, from one in the world's."""

@@ -23,7 +23,7 @@ from types import MappingProxyType
 import numpy as np
 import scipy
 
-from evodesign.mechanics.agent import Agent, Contact, Role, Touched
+from evodesign.mechanics.agent import Agent, Contact, Touched
 from evodesign.mechanics.floating_base import ROOT, Array, BodyState, Configuration, FloatingBody
 from evodesign.mechanics.payload import Grasp
 from evodesign.mechanics.scene import Scene
@@ -89,7 +89,7 @@ class CoupledModel:
         """
         self._hand_rows = 6 if scene.payload.grasp is Grasp.RIGID else 3
         self._agents = scene.agents
-        trees = [(agent, robot_tree if agent.role is Role.ROBOT else agent.tree) for agent in self._agents]
+        trees = [(agent, robot_tree if agent.designed else agent.tree) for agent in self._agents]
         grasps = {
             _grasp(agent, hand): agent.turn @ np.array(scene.payload.grasp_point(agent, hand))
             for agent in self._agents

@@ -54,6 +54,11 @@ class Scene:
         return self.robots[0]
 
     @property
+    def designed(self) -> tuple[Agent, ...]:
+        """The robots that designs change, who are all alike."""
+        return tuple(agent for agent in self.agents if agent.designed)
+
+    @property
     def human(self) -> Agent:
         """The first person."""
         return self.people[0]

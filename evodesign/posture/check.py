@@ -209,8 +209,8 @@ class Checker:
 
     @property
     def robot(self) -> AgentModel:
-        """Of the design."""
-        return next(model for model in self._models if model.agent.role is Role.ROBOT)
+        """The first one, of the design."""
+        return next(model for model in self._models if model.agent.designed)
 
     def elsewhere(self, scene: Scene, *people: AgentModel) -> Checker:
         """The check of the same robots in another scene."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import lru_cache
 
 from evodesign.collision.zero_posture import built_in_slack
@@ -10,6 +10,7 @@ from evodesign.design.space import DesignSpace
 from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.check import AgentModel, Checker
+from evodesign.tree.model import Tree
 
 AT_HAND = 64
 """Designs whose check is kept: more than starts are learned from."""
@@ -26,18 +27,22 @@ def can_be_built(robot: Agent, space: DesignSpace) -> Callable[[Sequence[float]]
     return apart
 
 
+def with_hardware(models: Iterable[AgentModel], tree: Tree) -> tuple[AgentModel, ...]:
+    """Those of agents, with a design's tree for the robots that designs change."""
+    return tuple(model.resized(tree) if model.agent.designed else model for model in models)
+
+
 class DesignCheckers:
     """The check of any design; those of the latest ones are at hand.
 
     Args:
-        scene: robot, person and load.
+        scene: agents and load.
         space: of the designs.
     """
 
     def __init__(self, scene: Scene, space: DesignSpace) -> None:
         self._scene, self._family = scene, space.family(scene.robot.tree)
-        self._robot = AgentModel.of(scene.robot, scene.robot.tree)
-        self._people = [AgentModel.of(person, person.tree) for person in scene.people]
+        self._models = [AgentModel.of(agent, agent.tree) for agent in scene.agents]
         self._of = lru_cache(AT_HAND)(self._made)
 
     def of(self, design: Sequence[float]) -> Checker:
@@ -45,5 +50,4 @@ class DesignCheckers:
         return self._of(tuple(design))
 
     def _made(self, design: tuple[float, ...]) -> Checker:
-        robot = self._robot.resized(self._family.resized(design))
-        return Checker(self._scene, robot, *self._people)
+        return Checker(self._scene, *with_hardware(self._models, self._family.resized(design)))

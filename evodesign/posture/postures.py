@@ -65,7 +65,7 @@ class PostureProblem:
         self._made: dict[tuple[str, type[TaskRecord], MethodName], JointPostures] = {}
         self._latest: dict[tuple[JointPostures, Task, bool], tuple[object, Trial]] = {}
         if symmetry is not Symmetry.OFF:
-            for robot in setting.scene.robots:
+            for robot in setting.scene.designed:
                 setting.space.check_mirror(robot.tree)
             symmetric_forms(setting.scene)
 

@@ -6,7 +6,7 @@ A population's table stands for one person per sex and percentile.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 import msgspec
@@ -34,35 +34,48 @@ from evodesign.problem.flexion import bent_ranges
 from evodesign.problem.meshes import with_surfaces
 from evodesign.problem.person_posture import HEAD, with_posture
 from evodesign.problem.stance_limits import stance_of
-from evodesign.problem.torque_limits import torque_limits
+from evodesign.problem.torque_limits import driven_joints, torque_limits
 from evodesign.problem.unknown_names import refuse_unknown
 from evodesign.records import ProblemSource
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.urdf_read import InertiaRule, read_urdf
 
 
-def robot_agent(tables: ProblemFile, source: ProblemSource) -> Agent:
-    """The robot of the `[robot]` table."""
-    table = tables.robot
+def robot_agents(tables: ProblemFile, source: ProblemSource) -> tuple[Agent, ...]:
+    """The robots of the `robot` tables, those that a design changes first."""
+    robots: list[Agent] = []
+    for key, table in tables.robots.items():
+        designed = table is tables.designed
+        robot = _robot(key, table, driven_joints(tables) if designed else (), source)
+        for side in table.sides:
+            name = f"{ROBOT}_{len(robots) + 1}" if robots else ROBOT
+            robots.append(replace(robot, name=name, quarters=side.quarters, as_drawn=not designed))
+    return tuple(robots)
+
+
+def _robot(key: str, table: RobotTable, driven: Collection[str], source: ProblemSource) -> Agent:
     bare = read_urdf(source.files[table.urdf], table.urdf, table.inertia)
     seen = with_surfaces(bare, source.files, source.path) if table.meshes else bare
-    tree = _with_frames(_turned(seen, table.facing), table.frames, ROBOT, source)
-    agent = _agent(Role.ROBOT, ROBOT, tree, table.hands, table.soles, table.trunk, table.joints, source)
+    tree = _with_frames(_turned(seen, table.facing), table.frames, key, source)
+    agent = _agent(Role.ROBOT, key, tree, table.hands, table.soles, table.trunk, table.joints, source)
     hard = table.torque_limits is TorqueLimits.HARD
-    limits = torque_limits(tables, source, agent)
-    return replace(agent, torque_limits=limits, limits_torques=hard, bent_ranges=_bent(agent, table, source))
+    limits = torque_limits(key, table, driven, source, agent)
+    bent = _bent(key, agent, table, source)
+    return replace(agent, torque_limits=limits, limits_torques=hard, bent_ranges=bent)
 
 
-def _bent(agent: Agent, table: RobotTable, source: ProblemSource) -> Mapping[str, tuple[float, float]]:
+def _bent(
+    key: str, agent: Agent, table: RobotTable, source: ProblemSource
+) -> Mapping[str, tuple[float, float]]:
     """Ranges of knees and elbows that stay bent."""
     asked = {
         "knee_flexion_deg": (table.knee_flexion_deg, agent.feet),
         "elbow_flexion_deg": (table.elbow_flexion_deg, agent.hands),
     }
     found: dict[str, tuple[float, float]] = {}
-    for key, (least, ends) in asked.items():
+    for name, (least, ends) in asked.items():
         if least is not None:
-            found |= bent_ranges(agent, ends, math.radians(least), f"robot.{key}", source)
+            found |= bent_ranges(agent, ends, math.radians(least), f"{key}.{name}", source)
     return found
 
 
@@ -79,9 +92,18 @@ def _turned(tree: Tree, facing: Facing) -> Tree:
 
 
 def human_agents(tables: ProblemFile, source: ProblemSource) -> tuple[Agent, ...]:
-    """The people of the `human` tables; where there are several, each has a label of its own."""
+    """The people of the `human` tables; where there are several, each has a label of its own.
+
+    Those at one side have one name.
+    """
     entries = everyone(tables, source)
     people = [_human(key, table, source) for key, table in entries]
+    sides = [*dict.fromkeys(table.side for _, table in entries)]
+    names = {side: f"{HUMAN}_{place + 1}" if place else HUMAN for place, side in enumerate(sides)}
+    people = [
+        replace(person, name=names[table.side], quarters=table.side.quarters)
+        for person, (_, table) in zip(people, entries, strict=True)
+    ]
     people = [
         person if table.urdf else replace(person, stance=stance_of(tables, source, person))
         for person, (_, table) in zip(people, entries, strict=True)
@@ -208,7 +230,6 @@ def _agent(
             SoleSize(*soles.size_m),
         ),
         trunk=trunk,
-        quarters=0 if role is Role.ROBOT else 2,
     )
 
 

@@ -8,7 +8,6 @@ import msgspec
 
 from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError, nearest_name
-from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.scene import Scene, scene_of
 from evodesign.mechanics.stance_case import StanceCase
 from evodesign.nlp.method import MethodName, SolverOptions
@@ -19,7 +18,7 @@ from evodesign.posture.formulations.codesign import JointSettings
 from evodesign.posture.postures import Symmetry
 from evodesign.problem.agents import (
     human_agents,
-    robot_agent,
+    robot_agents,
 )
 from evodesign.problem.collisions import with_collisions
 from evodesign.problem.constraints import constraints_of, refuse_constraints, with_bodies_apart
@@ -40,13 +39,13 @@ from evodesign.problem.from_tables import (
     worker_limits,
 )
 from evodesign.problem.joint_settings import joint_settings, joint_start
-from evodesign.problem.loads import held_alone, payloads, refuse_stiff_arms, scene_disturbances
-from evodesign.problem.robot_alone import refuse_what_needs_people
+from evodesign.problem.loads import held_by, payloads, refuse_stiff_arms, scene_disturbances
 from evodesign.problem.samples import samples_of
 from evodesign.problem.source import decode_toml
 from evodesign.problem.stance_limits import stance_of
 from evodesign.problem.standing_cases import standing_cases
 from evodesign.problem.symmetric import resolved_symmetry
+from evodesign.problem.teams import refuse_what_teams_lack, teams_of
 from evodesign.problem.torque_limits import refuse_unlimited
 from evodesign.quantities.objectives import SHARED_REACH
 from evodesign.records import (
@@ -70,12 +69,12 @@ BELOW = 0.1
 
 @dataclass(frozen=True, slots=True)
 class DesignProblem:
-    """A robot, people if there are any, loads, tasks, and the hardware that may change.
+    """Robots, people if there are any, loads, tasks, and the hardware that may change.
 
     Args:
         name: of the problem.
         source: its files, from which any worker builds it again.
-        scenes: every person with every load, the robot, ground and stance; all loads of a person in a row.
+        scenes: every team with every load, ground and stance; all loads of a team in a row.
         space: design parameters.
         tasks: what everyone does with every load.
         weights: of the agents' efforts in the posture problem.
@@ -121,7 +120,7 @@ class DesignProblem:
 
     @property
     def scene(self) -> Scene:
-        """The first scene: all of them have its robot, ground and stance."""
+        """The first scene: all of them have its robots, ground and stance."""
         return self.scenes[0]
 
     @property
@@ -241,24 +240,23 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         InputError: naming file, key, what was wanted and what was found.
     """
     tables = decode_toml(source.text, source.path, ProblemFile)
-    robot, ground, stance = robot_agent(tables, source), ground_of(tables), stance_of(tables, source)
+    robots, ground, stance = robot_agents(tables, source), ground_of(tables), stance_of(tables, source)
+    robot = robots[0]
     refuse_unlimited(tables, source, robot)
-    refuse_what_needs_people(tables, source)
     people, loads = human_agents(tables, source), payloads(tables, source)
-    if not people:
-        loads = tuple(held_alone(load, robot) for load in loads)
-    refuse_stiff_arms(source, loads, (robot, *people))
-    disturbances = scene_disturbances(tables, source, (robot, *people), loads)
-    crews: list[tuple[Agent, ...]] = [(robot, human) for human in people]
-    crews = crews or [(robot,)]
-    scenes = tuple(Scene(crew, load, ground, stance, disturbances) for crew in crews for load in loads)
+    teams = teams_of(tables, source, robots, people)
+    refuse_what_teams_lack(tables, source, teams[0])
+    loads = tuple(held_by(load, teams[0]) for load in loads)
+    refuse_stiff_arms(source, loads, (*robots, *people))
+    disturbances = scene_disturbances(tables, source, (*robots, *people), loads)
+    scenes = tuple(Scene(team, load, ground, stance, disturbances) for team in teams for load in loads)
     check_allocations(tables, source)
     scenes = tuple(replace(scene, robot_share=robot_share(tables, source, scene)) for scene in scenes)
     space = space_of(tables, source, robot.tree)
     resolved = resolved_symmetry(tables, source, scenes, space)
     scenes = with_collisions(tables, source, resolved.scenes, space)
     robot = scenes[0].robot
-    people = tuple(person for scene in scenes[:: len(loads)] for person in scene.people)
+    people = tuple({id(person): person for scene in scenes for person in scene.people}.values())
     start: dict[str, Genome] = {}
     if tables.search.start is not None:
         name = tables.search.start

@@ -13,7 +13,7 @@ from evodesign.collision.rules import LOAD, PLANES, BodyPair, CollisionRules
 from evodesign.design.space import DesignSpace
 from evodesign.design.spread import spread_designs
 from evodesign.errors import InputError, nearest_name
-from evodesign.mechanics.agent import ROBOT, Agent
+from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.scene import Scene
 from evodesign.problem.file import CollisionsTable, ProblemFile
 from evodesign.records import ProblemSource
@@ -62,7 +62,7 @@ def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> Collisio
         for pair in checked_pairs(agent.tree, agent.joints, agent.hand_frames, agent.foot_frames)
         if frozenset(pair) not in ignored
     ]
-    resized = (space.resized(agent.tree, values) for values in _designs(space) if agent.name == ROBOT)
+    resized = (space.resized(agent.tree, values) for values in _designs(space) if agent.designed)
     built_in = built_in_pairs(agent.tree, agent.joints, checked, resized, table.margin_m)
     built_in = tuple(pair for pair in built_in if frozenset(pair) not in ignored)
     own = {frozenset(pair): pair for pair in checked}

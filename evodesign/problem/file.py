@@ -78,6 +78,20 @@ class Facing(StrEnum):
         return ((x, -y, 0.0), (y, x, 0.0), (0.0, 0.0, 1.0))
 
 
+class Side(StrEnum):
+    """The side of the load at which somebody stands and looks at it, in the world's axes."""
+
+    BACK = "-x"
+    RIGHT = "-y"
+    FRONT = "+x"
+    LEFT = "+y"
+
+    @property
+    def quarters(self) -> int:
+        """Quarter turns about z that take the frame of who stands there to the world."""
+        return [*Side].index(self)
+
+
 class TorqueLimits(StrEnum):
     """Whether the limits of the robot's joint torques hold in every posture."""
 
@@ -92,10 +106,11 @@ class RobotTable(Table, frozen=True):
     which the robot looks. `packages` are folders in which `package://` and `model://` are found, beside those
     of the environment; `meshes = false` leaves out what the URDF shows as meshes. `knee_flexion_deg` and
     `elbow_flexion_deg` are the least angles of knees and elbows in postures, zero for straight limbs; left
-    out, joints take their whole ranges.
+    out, joints take their whole ranges. One like it stands at each of `sides`.
     """
 
     urdf: Name
+    sides: Annotated[tuple[Side, ...], Meta(min_length=1)] = (Side.BACK,)
     packages: tuple[Name, ...] = ()
     meshes: bool = True
     facing: Facing = Facing.FORWARD
@@ -136,9 +151,11 @@ class HumanTable(Table, frozen=True):
     generated person's shoulder joints are apart. `gaze_cone_deg` is the largest angle of the load from where
     the head looks. Of a person with a measured posture, `spread` says beside how many people of the measured
     distribution a front is evaluated once its search has ended, `posture_sample` which of them this one is.
+    People at different sides hold the load together; of those at one `side`, each in turn.
     """
 
     name: Name | None = None
+    side: Side = Side.FRONT
     population: PopulationForm | None = None
     stature_m: Positive | None = None
     mass_kg: Positive | None = None
@@ -227,7 +244,7 @@ class DisturbanceTable(Table, frozen=True):
     load_mass_share: Annotated[float, Meta(gt=-1.0)] = 0.0
     center_of_mass_m: Point = (0.0, 0.0, 0.0)
     push_n: Point = (0.0, 0.0, 0.0)
-    at: PushedAt = PushedAt.LOAD
+    at: Name = PushedAt.LOAD
 
 
 class LimitsTable(Table, frozen=True):
@@ -323,11 +340,12 @@ class SolverTable(Table, frozen=True):
 class ProblemFile(Table, frozen=True):
     """A whole problem file; `description` says in a sentence what it is about.
 
-    Without `human` the robot holds the load alone.
+    A design changes the first robot, wherever it stands; others stay as their files have them. Without
+    `human` robots hold the load alone.
     """
 
     name: Name
-    robot: RobotTable
+    robot: RobotTable | Annotated[tuple[RobotTable, ...], Meta(min_length=1)]
     payload: PayloadTable | Annotated[tuple[PayloadTable, ...], Meta(min_length=1)]
     task: TaskTable
     design: DesignTable
@@ -345,6 +363,16 @@ class ProblemFile(Table, frozen=True):
     disturbance: tuple[DisturbanceTable, ...] = ()
     collisions: CollisionsTable | None = None
     description: str = ""
+
+    @property
+    def robots(self) -> dict[str, RobotTable]:
+        """The tables of robots by their keys, for messages."""
+        return _listed("robot", self.robot)
+
+    @property
+    def designed(self) -> RobotTable:
+        """The table of the robot that a design changes."""
+        return next(iter(self.robots.values()))
 
     @property
     def people(self) -> dict[str, HumanTable]:

@@ -37,7 +37,7 @@ class RuleDifference:
 def rule_differences(problem: DesignProblem) -> tuple[RuleDifference, ...]:
     """The links of the robot whose mass is the same, but elsewhere or otherwise spread, by the other rule."""
     tables = decode_toml(problem.source.text, problem.source.path, ProblemFile)
-    name = tables.robot.urdf
+    name = tables.designed.urdf
     rules = InertiaRule.SHAPES, InertiaRule.FILE
     by_shapes, by_file = links_by_rule(problem.source.files[name], name, rules)
     taken = problem.scene.robot.tree.link_by_name

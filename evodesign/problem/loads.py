@@ -6,13 +6,17 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from evodesign.errors import InputError
+from evodesign.body.placement import Vector
+from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.agent import HUMAN, ROBOT, SIDES, TO_THE_LEFT, Agent
-from evodesign.mechanics.disturbance import Disturbance, Disturbances
+from evodesign.mechanics.disturbance import Disturbance, Disturbances, PushedAt
 from evodesign.mechanics.elbow import elbow
 from evodesign.mechanics.payload import WRIST_MOMENT, Grasp, GraspDirection, Payload
 from evodesign.problem.file import DisturbanceTable, PayloadTable, ProblemFile
 from evodesign.records import ProblemSource
+
+FROM_CORNERS = 0.25
+"""How far hands are from the middle of their side where somebody stands at a neighbouring one, in widths."""
 
 GRASP_CONE = math.radians(60.0)
 """Largest angle of a forearm from the direction of the grasp [rad]: about what a wrist bends."""
@@ -72,6 +76,24 @@ def held_alone(load: Payload, agent: Agent) -> Payload:
     return replace(load, grasp_points={**places, **load.grasp_points})
 
 
+def held_by(load: Payload, team: Sequence[Agent]) -> Payload:
+    """A load as a team holds it, where the file does not say where.
+
+    Who holds it alone does so by the middles of its sides: hands in points on its near edge would not balance
+    it. Who has somebody at a neighbouring side keeps away from the corner between them.
+    """
+    if len(team) == 1:
+        return held_alone(load, team[0])
+    points: dict[tuple[str, str], Vector] = {}
+    for agent in team:
+        if any((each.quarters - agent.quarters) % 2 for each in team):
+            depth, width, height = load.faced(agent)
+            for hand in agent.hands:
+                place = (-depth / 2.0, FROM_CORNERS * width * TO_THE_LEFT[hand.side], height / 2.0)
+                points[agent.name, hand.name] = agent.to_world(place)
+    return replace(load, grasp_points={**points, **load.grasp_points})
+
+
 def _grasp_cone(key: str, table: PayloadTable, source: ProblemSource) -> float:
     """Largest angle of a forearm from the direction of the grasp [rad]."""
     if table.grasp_cone_deg is None:
@@ -116,7 +138,7 @@ def scene_disturbances(
     Args:
         tables: the problem file.
         source: the problem, for messages.
-        agents: robot and people.
+        agents: robots and people.
         payloads: all loads.
     Raises:
         InputError: a name that is there twice, a centre of mass outside a box, a push on no trunk.
@@ -135,7 +157,7 @@ def scene_disturbances(
             raise InputError(source.path, f"{key}.name", "a unique name", f"'{disturbance.name}' twice")
         for payload in payloads:
             _refuse_outside(disturbance, payload, f"{key}.center_of_mass_m", source)
-        _refuse_trunkless(table, agents, f"{key}.at", source)
+        _refuse_unpushed(table, agents, f"{key}.at", source)
         cases.append(disturbance)
     return Disturbances(tuple(cases), tables.task.disturbed_effort)
 
@@ -150,9 +172,13 @@ def _refuse_outside(disturbance: Disturbance, payload: Payload, key: str, source
             raise InputError(source.path, f"{key}[{axis}]", wanted, f"{center:g} from it")
 
 
-def _refuse_trunkless(
+def _refuse_unpushed(
     table: DisturbanceTable, agents: Sequence[Agent], key: str, source: ProblemSource
 ) -> None:
+    names = [PushedAt.LOAD.value, *dict.fromkeys(agent.name for agent in agents)]
+    if table.at not in names:
+        found = f"'{table.at}'{nearest_name(table.at, names)}"
+        raise InputError(source.path, key, f"one of {', '.join(names)}", found)
     for agent in agents:
         if table.at == agent.name and not agent.trunk:
             wanted = f"a trunk to push: frames in {agent.name}.trunk"

@@ -54,16 +54,17 @@ def is_kept_name(name: str) -> bool:
 
 
 def mesh_texts(
-    table: RobotTable, file: Path, robot: TranslatedRobot, folder: Path, source: str
+    table: RobotTable, file: Path, robot: TranslatedRobot, folder: Path, source: str, key: str = KEY
 ) -> dict[str, str]:
     """The meshes that a robot shows, as texts by the names under which the problem keeps them.
 
     Args:
-        table: `[robot]` of the problem.
+        table: the robot's, of the problem.
         file: path of the robot's file.
         robot: its content. Nothing is read if it is no usable URDF, of which building the problem tells.
         folder: of the problem.
         source: the problem's name, for messages.
+        key: of the robot's file, likewise.
     Raises:
         InputError: a mesh is nowhere, cannot be read, or there are too many.
     """
@@ -78,16 +79,18 @@ def mesh_texts(
     }
     if len(links) > MOST_MESHES:
         wanted = f"at most {MOST_MESHES} mesh files; [robot] meshes = false leaves them out"
-        raise InputError(source, KEY, wanted, f"{len(links)} in '{table.urdf}'")
+        raise InputError(source, key, wanted, f"{len(links)} in '{table.urdf}'")
     packages = [folder / place for place in table.packages]
     places = MeshPlaces(file.absolute().parent, packages, os.environ)
     uses = sum(len(link.meshes) for link in tree.links)
     most = max(FEWEST, min(OF_ONE, OF_ALL // max(len(links), 1), MOST_SHOWN // max(uses, 1)))
     kept = {mesh: _kept(folder / kept_name(mesh)) for mesh in sorted(links)}
     missing = [mesh for mesh in kept if kept[mesh] is None]
-    keys = {mesh: f"{KEY}, link {links[mesh]}" for mesh in missing}
+    keys = {mesh: f"{key}, link {links[mesh]}" for mesh in missing}
     own = [mesh for mesh in missing if mesh in robot.meshes]
-    paths = {mesh: _found(mesh, links[mesh], places, source) for mesh in missing if mesh not in robot.meshes}
+    paths = {
+        mesh: _found(mesh, links[mesh], places, source, key) for mesh in missing if mesh not in robot.meshes
+    }
     read = {mesh: read_mesh(path, most, source, keys[mesh]) for mesh, path in paths.items()}
     read = stood_upright(tree, read, [mesh for mesh, path in paths.items() if says_y_up(path)])
     read |= {mesh: few_triangles(robot.meshes[mesh], mesh, most, source, keys[mesh]) for mesh in own}
@@ -106,14 +109,14 @@ def _kept(path: Path) -> str | None:
     return None
 
 
-def _found(mesh: str, link: str, places: MeshPlaces, source: str) -> Path:
+def _found(mesh: str, link: str, places: MeshPlaces, source: str, key: str) -> Path:
     path = places.find(mesh)
     if path is None:
         wanted = (
             f"the mesh '{mesh}' of link {link}; [robot] packages = [..] names folders of packages, "
             f"meshes = false leaves meshes out"
         )
-        raise InputError(source, KEY, wanted, f"no such file, looked for in {places.searched(mesh)}")
+        raise InputError(source, key, wanted, f"no such file, looked for in {places.searched(mesh)}")
     return path
 
 

@@ -33,7 +33,7 @@ def model_json(problem: DesignProblem) -> dict[str, Any]:
     lifts = [_lift(task) for task in problem.tasks if isinstance(task, Lift)]
     return {
         "problem": problem.name,
-        "agents": [_agent(scene.robot), *_people(problem)],
+        "agents": [*map(_agent, scene.robots), *_people(problem)],
         **({"payload": told[0]} if len(told) == 1 else {"payloads": told}),
         "heights_m": [task.height_m for task in problem.tasks if isinstance(task, Hold)],
         **({"lifts": lifts} if lifts else {}),
@@ -72,7 +72,7 @@ def _collisions(problem: DesignProblem) -> dict[str, Any]:
         agent.label or agent.name: [
             {"bodies": list(pair), "reason": reason} for pair, reason in may_overlap(agent).items()
         ]
-        for agent in (problem.scene.robot, *_by_label(problem).values())
+        for agent in (*problem.scene.robots, *_by_label(problem).values())
     }
     margin = next(iter(rules.values())).margin
     return {"collisions": {"margin_m": margin, "pairs": pairs, "exempt": exempt}}
@@ -99,10 +99,11 @@ def _people(problem: DesignProblem) -> list[dict[str, Any]]:
     if len(people) <= 1:
         return [_agent(person) for person in people.values()]
     tables = decode_toml(problem.source.text, problem.source.path, ProblemFile)
-    given = [table for _, table in everyone(tables, problem.source)]
+    given = sorted(everyone(tables, problem.source), key=lambda entry: entry[1].side.quarters)
+    ordered = sorted(people.items(), key=lambda named: named[1].quarters)  # at each side as in the file
     return [
         {**_agent(person), "who": label, "sex": table.sex, "stature_m": table.stature_m}
-        for (label, person), table in zip(people.items(), given, strict=True)
+        for (label, person), (_, table) in zip(ordered, given, strict=True)
     ]
 
 

@@ -40,10 +40,10 @@ def notes(problem: DesignProblem) -> tuple[str, ...]:
         for joint in human.joints
         if joint.name in anatomy
     )
-    trees = (problem.scene.robot.tree, *people)
+    trees = (*(robot.tree for robot in problem.scene.robots), *people)
     read = (f"{tree.name}: {sentence}" for tree in trees for sentence in tree.notes)
     wrong = (sentence for sentence in found if sentence)
-    agents = (problem.scene.robot, *(person for scene in problem.scenes for person in scene.people))
+    agents = (*problem.scene.robots, *(person for scene in problem.scenes for person in scene.people))
     still = (f"{agent.tree.name}: {sentence}" for agent in agents for sentence in _still(agent))
     left, assumed = left_out(problem.source), assumed_heights(problem)
     return tuple(dict.fromkeys((*read, *still, *problem.symmetry_notes, *wrong, *assumed, *left)))

@@ -74,18 +74,19 @@ def _plain(value: Any) -> Any:
 
 def _source(text: str, source: str, folder: Path, symmetry: str | None) -> ProblemSource:
     tables = decode_toml(text, source, ProblemFile)
-    people = {f"{key}.urdf": table.urdf for key, table in tables.people.items()}
+    named = {key: table.urdf for key, table in tables.robots.items()}
+    people = {key: table.urdf for key, table in tables.people.items() if table.urdf is not None}
     models = {
-        name: read_robot(_named(folder, name), name, source, key)
-        for key, name in {"robot.urdf": tables.robot.urdf, **people}.items()
-        if name is not None
+        name: read_robot(_named(folder, name), name, source, f"{key}.urdf")
+        for key, name in {**named, **people}.items()
     }
     files = {name: model.urdf for name, model in models.items()}
     if tables.search.start is not None:
         start = tables.search.start
         files[start] = read_text(_named(folder, start), source, "search.start")
-    robot = tables.robot.urdf
-    files |= mesh_texts(tables.robot, _named(folder, robot), models[robot], folder, source)
+    for key, table in tables.robots.items():
+        file = _named(folder, table.urdf)
+        files |= mesh_texts(table, file, models[table.urdf], folder, source, f"{key}.urdf")
     return ProblemSource(path=source, text=text, files=files, symmetry=symmetry)
 
 

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from fnmatch import fnmatchcase
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.agent import Agent
-from evodesign.problem.file import ProblemFile, TorqueLimits
+from evodesign.problem.file import ProblemFile, RobotTable, TorqueLimits
 from evodesign.records import ProblemSource, Sense
 
-LIMITS_KEY = "robot.torque_limits_n_m"
+LIMITS = "torque_limits_n_m"
 
 PEAK_TORQUE = "peak_torque"
 """How the names of quantities end that need a limit of every joint."""
 
 
-def torque_limits(tables: ProblemFile, source: ProblemSource, robot: Agent) -> Mapping[str, float]:
+def torque_limits(
+    key: str, table: RobotTable, driven: Collection[str], source: ProblemSource, robot: Agent
+) -> Mapping[str, float]:
     """The largest torque [N m] of each of the robot's moving joints that has a positive, finite one.
 
     Joints whose actuators a design chooses have none here: what these hold is the design's.
@@ -25,28 +27,36 @@ def torque_limits(tables: ProblemFile, source: ProblemSource, robot: Agent) -> M
     A key of `[robot.torque_limits_n_m]` is a joint's name, or a pattern such as `*_knee` for all joints that
     it fits; a name counts more than a pattern.
 
+    Args:
+        key: of the robot's table, for messages.
+        table: the robot's.
+        driven: its joints whose actuators a design chooses.
+        source: the problem, for messages.
+        robot: as it is so far.
     Raises:
         InputError: a key that no joint answers to, or a joint that answers to two patterns; limits that shall
             hold and are not positive, or are not there.
     """
-    given, hard = tables.robot.torque_limits_n_m, tables.robot.torque_limits is TorqueLimits.HARD
-    driven = driven_joints(tables)
-    for joint in driven & given.keys():
+    given, hard = table.torque_limits_n_m, table.torque_limits is TorqueLimits.HARD
+    limits_key = f"{key}.{LIMITS}"
+    for joint in given.keys() & set(driven):
         found = f"one of '{joint}', which a [[design.actuator]] drives"
-        raise InputError(source.path, LIMITS_KEY, "limits of joints without an actuator", found)
-    asked = {name: _asked_limit(name, given, source) for name in robot.joints if name not in driven}
-    _refuse_unanswered(given, source, robot)
+        raise InputError(source.path, limits_key, "limits of joints without an actuator", found)
+    asked = {
+        name: _asked_limit(name, given, source, limits_key) for name in robot.joints if name not in driven
+    }
+    _refuse_unanswered(given, source, robot, limits_key)
     limits: dict[str, float] = {}
     for name, limit in asked.items():
         effort = robot.tree.joint_by_name[name].effort if limit is None else limit
         if hard and not effort > 0.0:
-            wanted = f"a positive effort limit of the joint '{name}', or one in {LIMITS_KEY}"
-            raise InputError(source.path, "robot.urdf", wanted, f"{effort:g}")
+            wanted = f"a positive effort limit of the joint '{name}', or one in {limits_key}"
+            raise InputError(source.path, f"{key}.urdf", wanted, f"{effort:g}")
         if 0.0 < effort < math.inf:
             limits[name] = effort
     if hard and not limits and not driven:
-        wanted = f"'none', or a joint with an effort limit in '{tables.robot.urdf}' or in {LIMITS_KEY}"
-        raise InputError(source.path, "robot.torque_limits", wanted, "'hard' and no limits")
+        wanted = f"'none', or a joint with an effort limit in '{table.urdf}' or in {limits_key}"
+        raise InputError(source.path, f"{key}.torque_limits", wanted, "'hard' and no limits")
     return limits
 
 
@@ -86,24 +96,24 @@ def refuse_unlimited_peak(
     for joint in robot.joints:
         if joint not in robot.torque_limits and joint not in driven:
             wanted = (
-                f"a torque limit of every joint of the robot for '{name}', in its URDF or in {LIMITS_KEY}"
+                f"a torque limit of every joint of the robot for '{name}', in its URDF or in robot.{LIMITS}"
             )
             raise InputError(source.path, key, wanted, f"none of '{joint}'")
 
 
-def _asked_limit(joint: str, given: Mapping[str, float], source: ProblemSource) -> float | None:
+def _asked_limit(joint: str, given: Mapping[str, float], source: ProblemSource, key: str) -> float | None:
     """The limit that the problem file gives a joint."""
     if joint in given:
         return given[joint]
     patterns = [pattern for pattern in given if fnmatchcase(joint, pattern)]
     if len(patterns) > 1:
         found = f"'{joint}' in '{patterns[0]}' and '{patterns[1]}'"
-        raise InputError(source.path, LIMITS_KEY, "patterns that share no joint", found)
+        raise InputError(source.path, key, "patterns that share no joint", found)
     return given[patterns[0]] if patterns else None
 
 
-def _refuse_unanswered(given: Mapping[str, float], source: ProblemSource, robot: Agent) -> None:
-    for key in given:
-        if not any(joint == key or fnmatchcase(joint, key) for joint in robot.joints):
+def _refuse_unanswered(given: Mapping[str, float], source: ProblemSource, robot: Agent, key: str) -> None:
+    for name in given:
+        if not any(joint == name or fnmatchcase(joint, name) for joint in robot.joints):
             wanted = f"the name of a joint of '{robot.tree.name}' that moves, or a pattern of such names"
-            raise InputError(source.path, LIMITS_KEY, wanted, f"'{key}'{nearest_name(key, robot.joints)}")
+            raise InputError(source.path, key, wanted, f"'{name}'{nearest_name(name, robot.joints)}")

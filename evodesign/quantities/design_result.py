@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import functools
+import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -14,12 +17,7 @@ from evodesign.posture.formulations.codesign import JointSettings
 from evodesign.posture.formulations.reach import Reach
 from evodesign.posture.results import AgentPosture, Array, CaseSolution
 from evodesign.quantities.demand import Demand
-from evodesign.quantities.hardware_quantities import (
-    StanceModel,
-)
-from evodesign.quantities.motion_quantities import (
-    mean_over_time,
-)
+from evodesign.quantities.stance_model import StanceModel
 from evodesign.records import Case
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.model import Tree
@@ -62,18 +60,21 @@ class DesignResult:
 
     @property
     def robot(self) -> Agent:
-        """The robot as the file describes it."""
+        """The robot that designs change, as the file describes it."""
         return self.scenes[0].robot
 
     def scene_of(self, case: Case) -> Scene:
-        """The scene of a case; its robot has the design's tree and limits where it has hardware."""
+        """The scene of a case; designed robots have the design's tree and limits where it has hardware."""
         scene = scene_of(self.scenes, case.pair)
         rated = {joint: each.rated for joint, each in actuators_of(self.tree).items()}
         if not rated and not self.space.walls:
             return scene
-        robot = scene.robot
-        robot = replace(robot, tree=self.tree, torque_limits={**robot.torque_limits, **rated})
-        return scene.with_agents(robot)
+        return scene.with_agents(
+            *(
+                replace(robot, tree=self.tree, torque_limits={**robot.torque_limits, **rated})
+                for robot in scene.designed
+            )
+        )
 
     def every_case(self) -> Iterator[tuple[CaseSolution, str]]:
         """Every solved case with a disturbance's name, undisturbed ones first, for which that is empty."""
@@ -107,6 +108,14 @@ class PostureSlopes:
     base_angles: Array
     joints: Mapping[str, float]
     wrenches: Mapping[str, Array] = field(default_factory=dict)
+
+    def times(self, factor: float) -> PostureSlopes:
+        """Those of a multiple."""
+        return PostureSlopes(
+            factor * self.base_angles,
+            {joint: factor * slope for joint, slope in self.joints.items()},
+            {name: factor * slope for name, slope in self.wrenches.items()},
+        )
 
     def along(self, posture: AgentPosture) -> float:
         """The sum of what a posture has, each times its derivative."""
@@ -149,6 +158,19 @@ class ObjectiveKind:
 
     unit: str
     value: Callable[[DesignResult], float | None]
+
+
+Value = TypeVar("Value", float, Array)
+
+
+def mean_over_time(times: Sequence[float], values: Sequence[Value]) -> Value:
+    """The mean of numbers or arrays: the only one, or by the trapezoidal rule over their times [s]."""
+    if len(values) == 1:
+        return values[0]
+    lengths = np.diff(times)
+    weights = (np.append(lengths, 0.0) + np.insert(lengths, 0, 0.0)) / (2.0 * (times[-1] - times[0]))
+    parts = (float(weight) * value for weight, value in zip(weights, values, strict=True))
+    return functools.reduce(operator.add, parts)
 
 
 def values_over_cases(

@@ -25,9 +25,8 @@ import numpy as np
 from evodesign.collision.zero_posture import built_in_slack
 from evodesign.errors import InputError
 from evodesign.human.strength import largest_relative_torque
-from evodesign.mechanics.agent import HUMAN, ROBOT
+from evodesign.mechanics.agent import HUMAN, ROBOT, Agent
 from evodesign.mechanics.balance import standing_height_of_mass
-from evodesign.mechanics.scene import Scene
 from evodesign.motion.solution import MotionCase
 from evodesign.outside import imported, is_outside
 from evodesign.posture.results import AgentPosture
@@ -35,93 +34,84 @@ from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.terms.paper_tasks import pressure_task
 from evodesign.quantities.design_result import (
     WORST,
-    ByTorque,
     CaseQuantity,
     DesignResult,
     ObjectiveKind,
     aggregate,
     largest_value,
+    mean_over_time,
     values_over_cases,
     values_over_instants,
 )
 from evodesign.quantities.hardware_quantities import (
+    HAND_DEFLECTION,
+    HOLDING_POWER,
+    SAFETY_FACTOR,
+    TORQUE_SHARE,
     actuator_mass,
     cost,
-    hand_deflection,
-    holding_power,
-    least_safety_factor,
-    power_by_torque,
-    torque_share,
 )
 from evodesign.quantities.motion_quantities import (
     ENDURANCE,
     ENERGY,
+    L5S1_MOMENT,
     LEAST_TIME,
     POWER,
+    ROBOT_POWER,
     SPINE,
-    l5s1_moment,
-    mean_over_time,
-    moment_by_torque,
-    motion_power_by_speed,
-    motion_power_by_torque,
-    robot_power,
 )
+from evodesign.quantities.over_agents import largest, norm, over_agents, people, robots
 from evodesign.quantities.person_quantities import (
     BACK,
-    back_compression,
-    compression_by_posture,
-    compression_by_torque,
+    BACK_COMPRESSION,
+    HUMAN_LOAD_TORQUE,
     endurance_seconds,
-    human_load_torque,
-    load_torque_by_posture,
 )
 from evodesign.records import Constraint, Lift, Objective
 from evodesign.violations import BODIES_APART
 
 
-def _by_norm(agent: str) -> ByTorque:
+def torque_norm(agent: Agent, posture: AgentPosture) -> float:
+    """|tau|_2 of an agent [N m] (paper, task t1)."""
+    return posture.torque_norm
+
+
+def _by_norm(agent: Agent, posture: AgentPosture) -> dict[str, float]:
     """D |tau| / d tau = tau / |tau|."""
-
-    def by_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, dict[str, float]]:
-        norm = postures[agent].torque_norm or 1.0
-        return {agent: {joint: torque / norm for joint, torque in postures[agent].torques.items()}}
-
-    return by_torque
+    norm = posture.torque_norm or 1.0
+    return {joint: torque / norm for joint, torque in posture.torques.items()}
 
 
-def _by_peak(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, dict[str, float]]:
+def peak_torque(robot: Agent, posture: AgentPosture) -> float:
+    """A robot's largest |tau| over its limit, over the joints: 1 for a joint at its limit."""
+    torques, limits = posture.torques, robot.torque_limits
+    return max(abs(torques[joint]) / limits[joint] for joint in robot.joints)
+
+
+def _by_peak(robot: Agent, posture: AgentPosture) -> dict[str, float]:
     """The largest share moves with one joint."""
-    torques, limits = postures[ROBOT].torques, scene.robot.torque_limits
-    joint = max(scene.robot.joints, key=lambda name: abs(torques[name]) / limits[name])
-    return {ROBOT: {joint: float(np.copysign(1.0 / limits[joint], torques[joint]))}}
+    torques, limits = posture.torques, robot.torque_limits
+    joint = max(robot.joints, key=lambda name: abs(torques[name]) / limits[name])
+    return {joint: float(np.copysign(1.0 / limits[joint], torques[joint]))}
 
 
-def _by_effort(scene: Scene, postures: Mapping[str, AgentPosture]) -> dict[str, dict[str, float]]:
-    """As the peak, for the person."""
-    hardest = largest_relative_torque(postures[HUMAN].torques, scene.human.strengths)
-    return {HUMAN: {hardest.joint: hardest.share / hardest.torque} if hardest and hardest.torque else {}}
+def effort(person: Agent, posture: AgentPosture) -> float:
+    """A person's largest |torque| over the joint's strength in that direction; 1 is all that they have."""
+    hardest = largest_relative_torque(posture.torques, person.strengths)
+    return 0.0 if hardest is None else hardest.share
 
 
-def robot_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
-    """The robot's |tau|_2 [N m] (paper, task t1)."""
-    return postures[ROBOT].torque_norm
+def _by_effort(person: Agent, posture: AgentPosture) -> dict[str, float]:
+    """As the peak, for a person."""
+    hardest = largest_relative_torque(posture.torques, person.strengths)
+    return {hardest.joint: hardest.share / hardest.torque} if hardest and hardest.torque else {}
 
 
-def human_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
-    """The person's |tau|_2 [N m] (paper, task t1)."""
-    return postures[HUMAN].torque_norm
+ROBOT_TORQUE = over_agents(robots, norm, "N m", torque_norm, by_torque=_by_norm)
+"""|tau|_2 of all joints of all robots."""
 
-
-def peak_torque(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
-    """The robot's largest |tau| over its limit, over the joints: 1 for a joint at its limit."""
-    torques, limits = postures[ROBOT].torques, scene.robot.torque_limits
-    return max(abs(torques[joint]) / limits[joint] for joint in scene.robot.joints)
-
-
-def human_effort(scene: Scene, postures: Mapping[str, AgentPosture]) -> float:
-    """The person's largest |torque| over the joint's strength in that direction; 1 is all that they have."""
-    strain = largest_relative_torque(postures[HUMAN].torques, scene.human.strengths)
-    return 0.0 if strain is None else strain.share
+HUMAN_TORQUE = over_agents(people, norm, "N m", torque_norm, by_torque=_by_norm)
+"""|tau|_2 of all joints of all people who hold the load together."""
 
 
 def reach_height(result: DesignResult) -> float | None:
@@ -160,7 +150,7 @@ def torque_margin(result: DesignResult) -> float | None:
 
     Where the robot stands alone, the peak torque over the case's factor is in the place of rated torque.
     """
-    share = largest_value(torque_share, result)
+    share = largest_value(TORQUE_SHARE.value, result)
     alone = [] if result.standing is None else result.standing.shares(result.tree)
     if share is None or alone is None or max(share, *alone, 0.0) <= 0.0:
         return None
@@ -169,14 +159,14 @@ def torque_margin(result: DesignResult) -> float | None:
 
 def safety_of_links(result: DesignResult) -> float | None:
     """The least safety factor of the robot's links, over all cases; None without walls."""
-    factors = values_over_instants(least_safety_factor, result)
+    factors = values_over_instants(SAFETY_FACTOR.value, result)
     least = math.inf if factors is None else min(each for values in factors for each in values)
     return least if least < math.inf else None
 
 
 def energy(result: DesignResult) -> float | None:
     """What the robot's joints and actuators draw in a lift [J], the mean over all lifts; None without any."""
-    found = values_over_instants(robot_power, result)
+    found = values_over_instants(ROBOT_POWER.value, result)
     if found is None:
         return None
     lifts = [
@@ -214,7 +204,8 @@ def com_height(result: DesignResult) -> float:
 
 def paper_cost(result: DesignResult) -> float | None:
     """W1 t1 + W3 t3 of all undisturbed cases + W2 t2 + W4 t4 [(10 N m)^2], the paper's cost (Eq. 14)."""
-    robot, human = (values_over_cases(t1, result, disturbed=False) for t1 in (robot_torque, human_torque))
+    torques = (ROBOT_TORQUE.value, HUMAN_TORQUE.value)
+    robot, human = (values_over_cases(t1, result, disturbed=False) for t1 in torques)
     if robot is None or human is None:
         return None
     efforts, tasks = result.paper.efforts, result.paper.tasks
@@ -270,16 +261,16 @@ NEED_STRENGTHS = (HUMAN_EFFORT, ENDURANCE)
 """How the names of quantities end that need people of known strength."""
 
 QUANTITIES: Mapping[str, CaseQuantity] = {
-    "robot_torque": CaseQuantity("N m", robot_torque, _by_norm(ROBOT)),
-    "human_torque": CaseQuantity("N m", human_torque, _by_norm(HUMAN)),
-    "peak_torque": CaseQuantity("1", peak_torque, _by_peak),
-    HUMAN_EFFORT: CaseQuantity("1", human_effort, _by_effort),
-    "holding_power": CaseQuantity("W", holding_power, power_by_torque),
-    "hand_deflection": CaseQuantity("mm", hand_deflection),
-    POWER: CaseQuantity("W", robot_power, motion_power_by_torque, motion_power_by_speed),
-    SPINE: CaseQuantity("N m", l5s1_moment, moment_by_torque),
-    "human_load_torque": CaseQuantity("N m", human_load_torque, by_posture=load_torque_by_posture),
-    BACK: CaseQuantity("N", back_compression, compression_by_torque, by_posture=compression_by_posture),
+    "robot_torque": ROBOT_TORQUE,
+    "human_torque": HUMAN_TORQUE,
+    "peak_torque": over_agents(robots, largest, "1", peak_torque, by_torque=_by_peak),
+    HUMAN_EFFORT: over_agents(people, largest, "1", effort, by_torque=_by_effort),
+    "holding_power": HOLDING_POWER,
+    "hand_deflection": HAND_DEFLECTION,
+    POWER: ROBOT_POWER,
+    SPINE: L5S1_MOMENT,
+    "human_load_torque": HUMAN_LOAD_TORQUE,
+    BACK: BACK_COMPRESSION,
 }
 """Values of single cases; an objective is the mean of one, or its `worst_` or `q90_`."""
 

@@ -37,8 +37,8 @@ class SceneModels:
     """Who stands on the stage of a design.
 
     Args:
-        agents: robot and person as the problem names them.
-        trees: their trees of numbers by agent name, the robot's that of the design.
+        agents: as the problem names them.
+        trees: their trees of numbers by agent name, that of the design for robots that it changes.
         payload: the load.
     """
 
@@ -49,7 +49,7 @@ class SceneModels:
     @classmethod
     def of(cls, scene: Scene, robot_tree: Tree) -> SceneModels:
         """The models of a scene with the robot of a design."""
-        trees = {each.name: robot_tree if each.role is Role.ROBOT else each.tree for each in scene.agents}
+        trees = {each.name: robot_tree if each.designed else each.tree for each in scene.agents}
         return cls(scene.agents, trees, scene.payload)
 
     @property
@@ -212,6 +212,13 @@ class SceneSet:
         return self.models[0].trees[ROBOT]
 
     @property
+    def robots(self) -> tuple[tuple[str, Tree], ...]:
+        """Each robot's name, with the tree of numbers."""
+        models = self.models[0]
+        named = (each.name for each in models.agents if each.role is Role.ROBOT)
+        return tuple((name, models.trees[name]) for name in named)
+
+    @property
     def people(self) -> tuple[tuple[Agent, Tree], ...]:
         """Each person once, with the tree of numbers, in the problem's order."""
         found = {
@@ -222,15 +229,18 @@ class SceneSet:
         return tuple(found.values())
 
     @property
-    def people_files(self) -> dict[str, tuple[str, Tree]]:
-        """By file name: each person's label and tree. Several people are numbered, whatever their labels."""
-        if len(self.people) == 1:
-            ((person, tree),) = self.people
-            return {"human.urdf": (person.label, tree)}
-        return {
-            f"human_{number}.urdf": (person.label, tree)
-            for number, (person, tree) in enumerate(self.people, 1)
-        }
+    def others_files(self) -> dict[str, tuple[str, Tree]]:
+        """By file name: label and tree of everyone whom designs do not change.
+
+        Several people are numbered, whatever their labels.
+        """
+        models = self.models[0]
+        robots = [each for each in models.agents if each.role is Role.ROBOT and not each.designed]
+        found = {f"{each.name}.urdf": (each.name, models.trees[each.name]) for each in robots}
+        for number, (person, tree) in enumerate(self.people, 1):
+            suffix = f"_{number}" if len(self.people) > 1 else ""
+            found[f"human{suffix}.urdf"] = person.label, tree
+        return found
 
     @property
     def payloads(self) -> tuple[Payload, ...]:
@@ -251,6 +261,7 @@ class SceneSet:
                 posture.torques_n_m.keys()
                 == posture.joints_rad.keys()
                 <= models.trees[name].joint_by_name.keys()
+                and posture.wrenches.keys() == {each.name for each in models.agent(name).contacts}
                 for name, posture in detail.agents.items()
             )
         ):

@@ -22,8 +22,10 @@ from evodesign.records import (
     RunHeader,
 )
 
-CREWS: Final = (frozenset(("robot", "human")), frozenset(("robot",)))
-"""Who holds the load: the robot with a person, or alone."""
+AGENTS: Final = frozenset(
+    f"{role}{number}" for role in ("robot", "human") for number in ("", "_2", "_3", "_4")
+)
+"""Who may hold a load: one at each of its four sides."""
 
 CONTACTS: Final = frozenset(f"{side}_{part}" for side in ("left", "right") for part in ("hand", "foot"))
 
@@ -133,8 +135,8 @@ def _detail(detail: Detail) -> str:
 
 
 def _instant(instant: InstantDetail) -> str:
-    if instant.agents.keys() not in CREWS:
-        return "a case has not one posture of the robot, and of nobody or a person beside it"
+    if not instant.agents or not instant.agents.keys() <= AGENTS:
+        return "a case has not one posture of each robot and person"
     if any(agents.keys() != instant.agents.keys() for agents in instant.disturbed.values()):
         return "a disturbance has not the agents of its posture"
     found: list[AgentDetail | LoadCaseDetail] = [*instant.agents.values()]

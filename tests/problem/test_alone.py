@@ -93,7 +93,7 @@ def test_what_is_told_of_it_names_no_person(alone: DesignProblem, result: Design
     assessment = evaluator.assessment(result.values, result)
     assert {*assessment.objectives} == {"robot_torque", "mass", "reach_height"}
     assert all(case.human_torque_norm is None for case in assessment.cases)
-    assert bodies(alone).people == {}
+    assert bodies(alone).others == {"": {}}
     assert all("human" not in gap.second for gap in solved_distances(result).values())
     shown = json.dumps(
         evaluation_json(alone, result.values, result, assessment, {}, evaluator.details(result)), default=str
@@ -112,7 +112,6 @@ def test_what_is_told_of_it_names_no_person(alone: DesignProblem, result: Design
             "task.effort_weights",
         ),
         ({"task": {"lift": [{"from_m": 0.7, "to_m": 0.9, "seconds": 2.0}]}}, "task.lift"),
-        ({"disturbance": [{"push_n": [5.0, 0.0, 0.0], "at": "human"}]}, "disturbance[0].at"),
         ({"search": {"algorithm": "joint-starts"}}, "search.algorithm"),
     ],
 )
@@ -148,3 +147,9 @@ def test_its_posture_is_drawn_exported_and_simulated(
     (held,) = simulated_holds(alone.scenes, result.tree, details[:1], 1.0, Feedback())
     assert not held.outcome.agents["robot"].fell
     assert held.outcome.drift < 1e-3
+
+
+def test_a_push_on_nobody_is_refused() -> None:
+    with pytest.raises(InputError, match="wanted one of load, robot, found 'human'") as error:
+        built(disturbance=[{"push_n": [5.0, 0.0, 0.0], "at": "human"}])
+    assert error.value.key == "disturbance[0].at"

@@ -15,7 +15,7 @@ from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.stance_case import StanceCase, StanceTorques
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source
-from evodesign.quantities.hardware_quantities import StanceModel
+from evodesign.quantities.stance_model import StanceModel
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_write import urdf_text

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from evodesign.errors import InputError
-from evodesign.mechanics.agent import HUMAN, SIDES
+from evodesign.mechanics.agent import SIDES
 from evodesign.mechanics.lumbar_load import lumbar_load
 from evodesign.posture.check import AgentModel
 from evodesign.posture.results import AgentPosture
@@ -20,12 +20,12 @@ from evodesign.problem.file import ProblemFile
 from evodesign.problem.source import decode_toml, read_source
 from evodesign.problem.unanswered_quantities import refuse_unanswered_quantity
 from evodesign.quantities.person_quantities import (
-    back_compression,
+    compression,
     compression_by_posture,
     compression_by_torque,
 )
 from evodesign.records import ProblemSource
-from tests.problem.standing_people import PERSON, POSTURES, SCENE, G, beyond, masses, places, standing
+from tests.problem.standing_people import PERSON, POSTURES, G, beyond, masses, places, standing
 
 FLEXION = "jL5S1_roty"
 
@@ -57,7 +57,7 @@ def test_it_is_the_moment_over_the_lever_and_what_is_above_along_the_spine(name:
     assert load.moment == pytest.approx(bends, abs=1e-6)
     assert load.compression == pytest.approx(abs(bends) / 0.05 - along, abs=1e-4)
     assert load.shear == pytest.approx(ahead, abs=1e-6)
-    assert back_compression(SCENE, {HUMAN: posture}) == load.compression
+    assert compression(PERSON, posture) == load.compression
 
 
 @pytest.mark.parametrize("name", POSTURES)
@@ -82,8 +82,8 @@ def test_to_stoop_presses_and_shears_the_back_more_than_to_stand_upright() -> No
 @pytest.mark.parametrize("name", POSTURES)
 def test_its_derivatives_are_those_of_differences(name: str) -> None:
     posture, generator = standing(name), np.random.default_rng(4)
-    by_torque = compression_by_torque(SCENE, {HUMAN: posture})[HUMAN]
-    by_posture = compression_by_posture(SCENE, {HUMAN: posture})[HUMAN]
+    by_torque = compression_by_torque(PERSON, posture)
+    by_posture = compression_by_posture(PERSON, posture)
     for _ in range(5):
         step = replace(
             posture,
@@ -93,7 +93,7 @@ def test_its_derivatives_are_those_of_differences(name: str) -> None:
             wrenches={f"{side}_foot": 50.0 * generator.standard_normal(6) for side in SIDES},
         )
         slope = by_posture.along(step) + by_torque[FLEXION] * step.torques[FLEXION]
-        ends = [back_compression(SCENE, {HUMAN: moved(posture, step, size)}) for size in (1e-5, -1e-5)]
+        ends = [compression(PERSON, moved(posture, step, size)) for size in (1e-5, -1e-5)]
         assert (ends[0] - ends[1]) / 2e-5 == pytest.approx(slope, rel=1e-7)
 
 

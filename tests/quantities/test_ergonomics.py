@@ -20,9 +20,8 @@ from evodesign.mechanics.contact import SoleSize
 from evodesign.posture.check import AgentModel
 from evodesign.posture.results import AgentPosture
 from evodesign.quantities.ergonomics import ergonomics, ergonomics_json
-from evodesign.quantities.person_quantities import back_compression, human_load_torque
+from evodesign.quantities.person_quantities import compression, load_torque
 from evodesign.records import AgentDetail
-from tests.problem.standing_people import SCENE
 
 MAN = Person(1.82, 72.7, Sex.MALE)
 
@@ -141,9 +140,8 @@ def test_the_back_the_load_and_the_scores_are_those_of_the_quantities() -> None:
         detail.torques_n_m,
         {name: np.array(wrench) for name, wrench in detail.wrenches.items()},
     )
-    scene = SCENE.with_agents(PERSON)
-    assert found.load_torque == pytest.approx(human_load_torque(scene, {HUMAN: solved}))
-    assert found.back.compression == pytest.approx(back_compression(scene, {HUMAN: solved}))
+    assert found.load_torque == pytest.approx(load_torque(PERSON, solved))
+    assert found.back.compression == pytest.approx(compression(PERSON, solved))
     assert found.endurance.seconds == endurance(detail.torques_n_m, PERSON.strengths).seconds
     assert (found.rula.whole, found.reba.whole) == (7, 6), "by hand from the worksheets"
 

@@ -13,8 +13,8 @@ from evodesign.mechanics.agent import HUMAN, SIDES
 from evodesign.posture.check import AgentModel
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem
-from evodesign.quantities.person_quantities import added_by_load, human_load_torque, load_torque_by_posture
-from tests.problem.standing_people import PERSON, POSTURES, SCENE, least_torques, standing
+from evodesign.quantities.person_quantities import added_by_load, load_torque, load_torque_by_posture
+from tests.problem.standing_people import PERSON, POSTURES, least_torques, standing
 
 NOTHING = dict.fromkeys(SIDES, (0.0,) * 6)
 
@@ -28,7 +28,7 @@ def test_it_is_the_torques_with_the_load_less_those_with_empty_hands(name: str) 
     found = added_by_load(PERSON, posture).torques
     assert found.tolist() == pytest.approx(list(loaded - empty), abs=1e-8)
     norm = float(np.linalg.norm(loaded - empty))
-    assert human_load_torque(SCENE, {HUMAN: posture}) == pytest.approx(norm, abs=1e-8)
+    assert load_torque(PERSON, posture) == pytest.approx(norm, abs=1e-8)
     assert norm > 20.0
 
 
@@ -54,15 +54,15 @@ def test_pinocchio_finds_the_same(name: str) -> None:
 
 def test_empty_hands_add_nothing() -> None:
     posture = standing("stooped", NOTHING)
-    assert human_load_torque(SCENE, {HUMAN: posture}) == 0.0
-    slopes = load_torque_by_posture(SCENE, {HUMAN: posture})[HUMAN]
+    assert load_torque(PERSON, posture) == 0.0
+    slopes = load_torque_by_posture(PERSON, posture)
     assert np.abs(slopes.base_angles).max() == 0.0
 
 
 @pytest.mark.parametrize("name", POSTURES)
 def test_its_derivatives_are_those_of_differences(name: str) -> None:
     posture, generator = standing(name), np.random.default_rng(3)
-    slopes = load_torque_by_posture(SCENE, {HUMAN: posture})[HUMAN]
+    slopes = load_torque_by_posture(PERSON, posture)
     for _ in range(5):
         step = AgentPosture(
             np.zeros(3),
@@ -71,7 +71,7 @@ def test_its_derivatives_are_those_of_differences(name: str) -> None:
             {},
             {f"{side}_hand": 10.0 * generator.standard_normal(6) for side in SIDES},
         )
-        ends = [human_load_torque(SCENE, {HUMAN: moved(posture, step, size)}) for size in (1e-5, -1e-5)]
+        ends = [load_torque(PERSON, moved(posture, step, size)) for size in (1e-5, -1e-5)]
         assert (ends[0] - ends[1]) / 2e-5 == pytest.approx(slopes.along(step), rel=1e-7)
 
 

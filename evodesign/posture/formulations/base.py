@@ -14,7 +14,7 @@ from evodesign.body.placement import Scalar
 from evodesign.design.space import DesignSpace
 from evodesign.human.measured_posture import MeasuredPosture
 from evodesign.identity import Exceptions, digest
-from evodesign.mechanics.agent import Agent, Role
+from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.payload import Payload
 from evodesign.mechanics.scene import Scene
 from evodesign.nlp.method import SolverOptions
@@ -43,7 +43,7 @@ class Setting:
 
 
 def embodied(forms: Iterable[Form], space: DesignSpace, values: Sequence[Scalar]) -> tuple[Embodied, ...]:
-    """Agents with their bodies, robots with the hardware of a design.
+    """Agents with their bodies, those that designs change with the hardware of one.
 
     Args:
         forms: of the agents.
@@ -51,7 +51,7 @@ def embodied(forms: Iterable[Form], space: DesignSpace, values: Sequence[Scalar]
         values: one number or expression per parameter.
     """
     return tuple(
-        Embodied(form, space.resized(tree, values) if form.agent.role is Role.ROBOT else tree)
+        Embodied(form, space.resized(tree, values) if form.agent.designed else tree)
         for form, tree in ((form, form.agent.tree) for form in forms)
     )
 

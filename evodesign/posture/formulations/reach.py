@@ -117,31 +117,35 @@ class ReachProblem:
 
     Args:
         setting: of the problem; the weights of efforts do not count.
+        name: of the robot.
         symmetric: whether postures are mirror-symmetric.
         known: portfolios of starts.
         solvers: of other scenes.
     """
 
-    name = "reach"
-
     def __init__(
         self,
         setting: Setting,
+        name: str = ROBOT,
         *,
         symmetric: bool,
         known: Precomputed = NOTHING_PRECOMPUTED,
         solvers: SolverCache | None = None,
     ) -> None:
-        setting = _with_own_rows(setting)
+        setting = _with_own_rows(setting, name)
         scene = setting.scene
-        self.form = forms_of(scene, symmetric=symmetric)[scene.agents.index(scene.robot)]
+        self.form = forms_of(scene, symmetric=symmetric)[scene.agents.index(scene.agent(name))]
         self._setting, self._solvers = setting, solvers or SolverCache()
-        self._starts = {HIGHEST: known.highest.starts, LOWEST: known.lowest.starts}
+        agent = self.form.agent
+        self._starts = {
+            sense: tuple(_in_place(start, agent.name) for start in own.starts if agent.designed)
+            for sense, own in ((HIGHEST, known.highest), (LOWEST, known.lowest))
+        }
         self._latest: dict[float, tuple[tuple[float, ...], list[RawSolution]]] = {}
 
     @cached_property
     def _solver(self) -> Solver:
-        key = program_key(self.name, self._setting.scene, self._setting, self.form)
+        key = program_key("reach", self._setting.scene, self._setting, self.form)
         return self._solvers.solver(key, self._program, self._setting.options)
 
     @cached_property
@@ -239,7 +243,7 @@ class ReachProblem:
         How bodies are parted is no part of it: other rows part them elsewhere.
         """
         height, raw = self.extreme(design, sense)
-        own = layout_of(self.program, ROBOT).values()
+        own = layout_of(self.program, self.form.agent.name).values()
         return () if height is None else ({name: raw.values[name] for name in own},)
 
     def derivative(
@@ -286,13 +290,22 @@ class ReachProblem:
         return bool(min(height - lower, block.upper[0] - height) < BUDGET.same_height)
 
 
-def _with_own_rows(setting: Setting) -> Setting:
-    """The setting with the rows that keep bodies apart which meet at extreme heights."""
-    robot = setting.scene.robot
+def _with_own_rows(setting: Setting, name: str) -> Setting:
+    """The setting with the rows that keep bodies of a robot apart which meet at extreme heights."""
+    robot = setting.scene.agent(name)
     if robot.collisions is None:
         return setting
     robot = replace(robot, collisions=robot.collisions.at_reach)
     return replace(setting, scene=setting.scene.with_agents(robot))
+
+
+def _in_place(start: Start, name: str) -> Start:
+    """A start of the first robot for one like it, each in the other's place."""
+    if name == ROBOT:
+        return start
+    renamed = {ROBOT: name, name: ROBOT}
+    parts = {key: key.partition(".") for key in start}
+    return {f"{renamed.get(who, who)}{dot}{what}": start[key] for key, (who, dot, what) in parts.items()}
 
 
 def _best_settled(
@@ -318,7 +331,8 @@ def robot_reach_program(form: Form, setting: Setting, *, switched: bool = False)
     """The robot's program; its parameters are the design, the load's mass and the sense."""
     design = ca.SX.sym("design", len(setting.space.parameters))
     values = ca.vertsplit(design)
-    tree = setting.space.resized(setting.scene.robot.tree, values)
+    agent = form.agent
+    tree = setting.space.resized(agent.tree, values) if agent.designed else agent.tree
     scene = shared_scene(setting.scene, setting.space, values)
     return reach_program(form, tree, scene, {"design": design}, switched=switched)
 
@@ -357,15 +371,24 @@ def reach_program(
     )
 
 
-def person_reach(scene: Scene, options: SolverOptions, *, symmetric: bool) -> PersonReach | None:
-    """How low and how high a scene's person can hold the load; None when no posture was found.
+def people_reach(scene: Scene, options: SolverOptions, *, symmetric: bool) -> PersonReach | None:
+    """How low and how high each of a scene's people can hold the load; None when no posture was found."""
+    found = [person_reach(scene, person.name, options, symmetric=symmetric) for person in scene.people]
+    known = [each for each in found if each is not None]
+    if len(known) < len(found):
+        return None
+    return PersonReach(max(each.lowest for each in known), min(each.highest for each in known))
+
+
+def person_reach(scene: Scene, name: str, options: SolverOptions, *, symmetric: bool) -> PersonReach | None:
+    """How low and how high a scene's person of a name can hold the load; None when no posture was found.
 
     A person does not depend on the robot, so this is found once per person and load, as the best of many
     starts. Together with a robot's reach it gives the heights at which robot and everyone can hold the load.
     A person's own bodies may pass through each other here, and no measured posture draws the person.
     """
-    scene = scene.with_agents(replace(scene.human, collisions=None, measured=None))
-    form = forms_of(scene, symmetric=symmetric)[scene.agents.index(scene.human)]
+    scene = scene.with_agents(replace(scene.agent(name), collisions=None, measured=None))
+    form = forms_of(scene, symmetric=symmetric)[scene.agents.index(scene.agent(name))]
     solver = Solver(reach_program(form, form.agent.tree, scene, {}), options)
     ends: dict[float, float] = {}
     for sense in (LOWEST, HIGHEST):

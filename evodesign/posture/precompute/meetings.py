@@ -17,7 +17,7 @@ from evodesign.mechanics.agent import ROBOT, Agent
 from evodesign.mechanics.scene import Scene
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.check import AgentModel, Checker, near_bodies, own_pairs
-from evodesign.posture.design_checkers import can_be_built
+from evodesign.posture.design_checkers import can_be_built, with_hardware
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.joint import JointPostures
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem
@@ -95,8 +95,7 @@ class _Finder:
         self.scene, self._free = scene, free
         self.forms = forms_of(free, symmetric=symmetric)
         self._setting, self._symmetric = replace(setting, scene=free, options=options), symmetric
-        self._robot = AgentModel.of(scene.robot, scene.robot.tree)
-        self._people = [AgentModel.of(person, person.tree) for person in scene.people]
+        self._models = [AgentModel.of(agent, agent.tree) for agent in scene.agents]
         space = setting.space
         built = can_be_built(scene.robot, space)
 
@@ -114,11 +113,10 @@ class _Finder:
         """What is near in postures of the tasks."""
         name, scene, space = "symmetric" if self._symmetric else "whole", self._free, self._setting.space
         problem = JointPostures(name, self.forms, self._setting, SolverCache())
-        people = [AgentModel.of(person, person.tree) for person in scene.people]
+        models = [AgentModel.of(agent, agent.tree) for agent in scene.agents]
         found: set[_Met] = set()
         for values in self._designs:
-            robot = AgentModel.of(scene.robot, space.resized(scene.robot.tree, values))
-            checker = Checker(scene, robot, *people)
+            checker = Checker(scene, *with_hardware(models, space.resized(scene.robot.tree, values)))
             for task in tasks:
                 best = problem.solve(values, task, (), checker).best
                 for instant, height in zip(best.instants if best else (), task.heights, strict=False):
@@ -139,8 +137,8 @@ class _Finder:
 
     def _near(self, values: tuple[float, ...], postures: Mapping[str, AgentPosture], height: float) -> _Near:
         """The pairs that are near, with their distances [m]."""
-        robot = self._robot.resized(self._setting.space.resized(self.scene.robot.tree, values))
-        gaps = near_bodies((robot, *self._people), postures, self.scene.payload.size, height, NEAR)
+        models = with_hardware(self._models, self._setting.space.resized(self.scene.robot.tree, values))
+        gaps = near_bodies(models, postures, self.scene.payload.size, height, NEAR)
         return {met: gap.distance for gap in gaps for met in own_pairs(gap)}
 
 

@@ -20,7 +20,7 @@ from evodesign.mechanics.agent import HUMAN
 from evodesign.mechanics.scene import Scene, scene_of
 from evodesign.nlp.solver import SolverCache
 from evodesign.posture.design_checkers import DesignCheckers, can_be_built
-from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, person_reach
+from evodesign.posture.formulations.reach import HIGHEST, LOWEST, ReachProblem, people_reach
 from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.meetings import found_meetings, with_meetings
 from evodesign.posture.precompute.plan import (
@@ -66,7 +66,7 @@ def compute_piece(
     setting = replace(setting, scenes=scenes, middle=with_meetings(setting.middle, known.meetings))
     scene = scene_of(setting.scenes, piece.pair)
     if piece.subject is Subject.PERSON_REACH:
-        found = person_reach(scene, setting.options, symmetric=setting.symmetric)
+        found = people_reach(scene, setting.options, symmetric=setting.symmetric)
     elif piece.subject is Subject.DESIGNS:
         found = _designs(setting, scene, solvers)
     else:
@@ -106,7 +106,7 @@ def with_piece(known: Precomputed, piece: Piece, content: bytes) -> Precomputed 
 def _with_found(known: Precomputed, piece: Piece, found: Mapping[str, Sequence[BodyPair]]) -> Precomputed:
     """Those of a scene beside those of others: of the robot there are several."""
     meetings = dict(known.meetings)
-    own = {(name, piece.pair[0] if name == HUMAN else ""): pairs for name, pairs in found.items()}
+    own = {(name, piece.pair[0] if name.startswith(HUMAN) else ""): pairs for name, pairs in found.items()}
     for key, pairs in own.items():
         meetings[key] = tuple(dict.fromkeys([*meetings.get(key, ()), *pairs]))
     return replace(known, meetings=meetings)

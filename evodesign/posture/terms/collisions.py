@@ -9,8 +9,8 @@ Any direction makes a row that is safe; the best one makes it exact. It is held 
 links during a solve, n = A_1 a + A_2 b with one of a and b zero: that which parts the bodies best where the
 solve begins (`posture.parting`). If another one does where it ends, the solve goes on from there with that
 one, which can only better it. So rows are signed and smooth, cannot be tunnelled, and need no more unknowns.
-Where a plane does, nothing is chosen: the floor; the plane half-way between robot and person, on whose own
-side everyone stays; and in symmetric postures the middle plane, between a link and its mirror image.
+Where a plane does, nothing is chosen: the floor; the plane half-way between two agents, on whose own side
+each stays; and in symmetric postures the middle plane, between a link and its mirror image.
 
 From a poor start such rows lead to poor optima: a head stays on the wrong side of the load. So those with a
 direction are off at first, by 10 m added to them; where a solution overlaps, its rows are switched on, and
@@ -33,7 +33,7 @@ import casadi as ca
 import numpy as np
 
 from evodesign.body.placement import Placement
-from evodesign.collision.rules import LOAD, PLANES, BodyPair
+from evodesign.collision.rules import FLOOR, LOAD, PLANES, BodyPair, partner_side
 from evodesign.collision.supports import ConvexShape, shapes_of
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.limit_groups import LimitGroup
@@ -187,6 +187,15 @@ def _shapes_at(body: Body, link: str, pose: Pose) -> list[PlacedShape]:
     return [placed_shape(shape, pose) for shape in shapes_of(body.part.link_by_name[link])]
 
 
+def _sides(body: Body, plane: str) -> list[Expression]:
+    """Directions towards the other side of the floor, or of the plane before each partner."""
+    if plane == FLOOR:
+        return [ca.DM([0.0, 0.0, -1.0])]
+    agent, size = body.agent, body.scene.payload.faced(body.agent)
+    turns = [each.quarters - agent.quarters for each in body.scene.agents if each.name != agent.name]
+    return [ca.DM(partner_side(size, turn)) for turn in turns]
+
+
 def _load(body: Body) -> PlacedShape:
     depth, width, height = body.scene.payload.faced(body.agent)
     box = ConvexShape(Placement(), (depth / 2.0, width / 2.0, height / 2.0))
@@ -212,11 +221,11 @@ def rows(body: Body) -> Iterator[Row]:
         margin = margin_of(body.form, meeting)
         spare = rules.margin - margin
         if meeting.kind is MeetingKind.PLANE:
-            away = ca.DM(PLANES[meeting.second])
-            for shape in _placed(body, meeting.first):
-                found[MeetingKind.PLANE].append(
-                    (meeting.label, -ca.dot(away, shape.centre) - shape.support(away), rules.margin)
-                )
+            for away in _sides(body, meeting.second):
+                for shape in _placed(body, meeting.first):
+                    found[MeetingKind.PLANE].append(
+                        (meeting.label, -ca.dot(away, shape.centre) - shape.support(away), rules.margin)
+                    )
         elif meeting.kind is MeetingKind.MIDDLE:
             for shape in _placed(body, meeting.first):
                 apart = 2.0 * (shape.centre[1] - shape.support(left)) + spare

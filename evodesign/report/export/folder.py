@@ -104,7 +104,7 @@ def export_design(design: ExportedDesign, directory: Path, *, on_front: bool) ->
 def _contents(design: ExportedDesign, *, on_front: bool) -> tuple[dict[str, bytes], dict[str, str]]:
     """Bytes of each file by name, and why others are missing."""
     scene_set, cases = design.scene_set, design.cases
-    people = {name: urdf_text(tree) for name, (_, tree) in design.scene_set.people_files.items()}
+    people = {name: urdf_text(tree) for name, (_, tree) in scene_set.others_files.items()}
     names, meshes = mesh_files(scene_set.robot, MESHES)
     urdfs = {"robot.urdf": urdf_text(scene_set.robot, names), **people}
     told = design_json(design.header, design.evaluation, cases, on_front=on_front)

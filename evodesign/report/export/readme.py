@@ -102,9 +102,14 @@ def _texts(design: ExportedDesign, files: Sequence[str]) -> dict[str, str]:
     texts = dict(FILES)
     if any(name.startswith(f"{MESHES}/") for name in files):
         texts |= WITH_MESHES
-    if len(design.scene_set.people) > 1:
-        for name, (label, _) in design.scene_set.people_files.items():
-            texts[name] = f"The person {_code(label)}, for kinematics and viewing."
+    for name, (label, _) in design.scene_set.others_files.items():
+        if name not in texts:
+            who = (
+                f"The robot {_code(label)}, which no design changes"
+                if "robot" in name
+                else f"The person {_code(label)}"
+            )
+            texts[name] = f"{who}, for kinematics and viewing."
     if several(design.cases):
         texts["robot.xml"] = FILES["robot.xml"].replace("per load height", "per case")
         replay = FILES["replay.mcap"].replace(HEIGHTS_AS_TIME, CASES_AS_TIME)
@@ -116,9 +121,14 @@ def _cases(design: ExportedDesign) -> tuple[str, ...]:
     """The cases that were solved with their times in the recording, of several people or loads."""
     if not several(design.cases):
         return ()
-    files = {label: name for name, (label, _) in design.scene_set.people_files.items()}
+    scene_set = design.scene_set
+    named = {label: name for name, (label, _) in scene_set.others_files.items()}
+    files = {
+        models.pair[0]: ", ".join(f"`{named[person.label]}`" for person in models.people)
+        for models in scene_set.models
+    }
     rows = [
-        f"| {time / 1e9:g} s | {_cell(case.person)} | `{files[case.person]}` "
+        f"| {time / 1e9:g} s | {_cell(case.person)} | {files[case.person]} "
         f"| {_cell(case.payload)} | {case.task} |"
         for case, time in {detail.case: time for time, detail in reversed(timed(design.cases))}.items()
     ]

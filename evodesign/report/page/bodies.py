@@ -1,4 +1,4 @@
-"""Robot, people and loads as the page's scripts draw them.
+"""Robots, people and loads as the page's scripts draw them.
 
 The page gets the trees and the logged joint positions; it computes the link poses itself, by the same
 formula as `tree.kinematics`. A design's robot is told by what differs from the unscaled one. The triangles of
@@ -14,6 +14,7 @@ from evodesign.body.shape import Box, Cylinder, Shape
 from evodesign.mechanics.agent import Agent
 from evodesign.problem.build import DesignProblem
 from evodesign.report.page.content import (
+    AgentContent,
     Bodies,
     JointBody,
     LinkBody,
@@ -32,19 +33,31 @@ from evodesign.tree.surface import Surface
 def bodies(problem: DesignProblem) -> Bodies:
     """Everything that stands in the problem's scenes, the robot unscaled."""
     robot = problem.scene.robot
-    people = {person.label: person for scene in problem.scenes for person in scene.people}
+    others = {
+        scene.pair[0]: {agent.name: agent for agent in scene.agents if not agent.designed}
+        for scene in problem.scenes
+    }
+    trees = [robot.tree, *(agent.tree for each in others.values() for agent in each.values())]
+    surfaces = _surfaces(trees)
     payloads = {scene.payload.label: scene.payload for scene in problem.scenes}
     position = _positions(robot.tree)
     changing = {position[name] for parameter in problem.space.parameters for name in parameter.links}
     return Bodies(
-        robot=agent_body(robot),
-        people={name: agent_body(person) for name, person in people.items()},
+        robot=agent_body(robot, surfaces),
+        agents=tuple(
+            AgentContent(agent.name, agent.role, agent.quarters % 4, agent.designed)
+            for agent in problem.scene.agents
+        ),
+        others={
+            label: {name: agent_body(agent, surfaces) for name, agent in each.items()}
+            for label, each in others.items()
+        },
         payloads={
             name: LoadBody(size_m=_three(load.size), mass_kg=float(load.mass))
             for name, load in payloads.items()
         },
         changing=tuple(sorted(changing)),
-        surfaces=tuple(_surface(surface) for surface in _surfaces(robot.tree)),
+        surfaces=tuple(_surface(surface) for surface in surfaces),
     )
 
 
@@ -54,7 +67,7 @@ def changes(
     """Links and joints of a design's robot that differ from the unscaled one's, by index in the tree."""
     before = problem.scene.robot.tree
     after = problem.space.resized(before, values)
-    position, surfaces = _positions(after), _surfaces(after)
+    position, surfaces = _positions(after), _surfaces([after])
     links = enumerate(zip(before.links, after.links, strict=True))
     joints = enumerate(zip(before.joints, after.joints, strict=True))
     return (
@@ -63,9 +76,14 @@ def changes(
     )
 
 
-def agent_body(agent: Agent) -> TreeBody:
-    """An agent's tree with what shows its links, and which links are its soles, of what size."""
-    position, surfaces = _positions(agent.tree), _surfaces(agent.tree)
+def agent_body(agent: Agent, surfaces: Mapping[Surface, int]) -> TreeBody:
+    """An agent's tree with what shows its links, and which links are its soles, of what size.
+
+    Args:
+        agent: unscaled.
+        surfaces: of all meshes, each with its index.
+    """
+    position = _positions(agent.tree)
     sole = agent.feet[0].sole
     return TreeBody(
         links=tuple(_link(link, surfaces) for link in agent.tree.links),
@@ -79,9 +97,9 @@ def _positions(tree: Tree) -> Mapping[str, int]:
     return {link.name: index for index, link in enumerate(tree.links)}
 
 
-def _surfaces(tree: Tree) -> Mapping[Surface, int]:
-    """The surfaces of a tree, each with its index; a design has those of the unscaled robot."""
-    seen = dict.fromkeys(mesh.surface for link in tree.links for mesh in link.shown)
+def _surfaces(trees: Sequence[Tree]) -> Mapping[Surface, int]:
+    """The surfaces of trees, each with its index; those of a robot are the same in all of its designs."""
+    seen = dict.fromkeys(mesh.surface for tree in trees for link in tree.links for mesh in link.shown)
     return {surface: index for index, surface in enumerate(seen) if surface is not None}
 
 

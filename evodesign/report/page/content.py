@@ -106,7 +106,7 @@ class MeshBody(Part, frozen=True):
     """A surface in a link's frame.
 
     Attributes:
-        surface: its index among the robot's.
+        surface: its index among all.
         linear: nine numbers, rows of the map from the surface's coordinates: scale, rotation and stretch.
         position: of the surface's origin in the link's frame [m].
     """
@@ -160,18 +160,34 @@ class LoadBody(Part, frozen=True):
     mass_kg: float
 
 
-class Bodies(Part, frozen=True):
-    """The robot, people and loads by name, and which robot links some parameter changes.
+class AgentContent(Part, frozen=True):
+    """Who holds the load: `robot` or `person`, in a frame turned about z by quarters against the world's.
 
     Attributes:
-        surfaces: of the robot's meshes, whatever the design.
-        people: by the name that the log gives them, which is empty where there is one.
-        payloads: likewise.
+        designed: whether designs change it.
+    """
+
+    name: str
+    role: str
+    quarters: int
+    designed: bool
+
+
+class Bodies(Part, frozen=True):
+    """Everybody who holds a load, and the loads, and which robot links some parameter changes.
+
+    Attributes:
+        robot: that designs change.
+        agents: of every case, in the order of the log.
+        others: who is beside it by agent, by the name of the people of a case, empty where there is one.
+        payloads: by their names.
         changing: indices of robot links.
+        surfaces: of all meshes, whatever the design.
     """
 
     robot: TreeBody
-    people: dict[str, TreeBody]
+    agents: tuple[AgentContent, ...]
+    others: dict[str, dict[str, TreeBody]]
     payloads: dict[str, LoadBody]
     changing: tuple[int, ...]
     surfaces: tuple[SurfaceBody, ...] = ()

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from evodesign.human.back import ACTION_LIMIT
-from evodesign.mechanics.agent import HUMAN
 from evodesign.mechanics.scene import Scene, scene_of
 from evodesign.quantities.ergonomics import ergonomics
 from evodesign.records import CaseDetail
@@ -13,7 +12,9 @@ from evodesign.report.page.content import EffortContent
 
 
 def effort_content(scenes: Sequence[Scene], cases: Sequence[CaseDetail]) -> tuple[EffortContent, ...]:
-    """One for each case, that of a lift at the person's largest torques; none of a robot alone.
+    """One for each case, that of a lift at the person's largest torques; none of robots alone.
+
+    Of several people who hold the load together it is that of the one whose back bears most.
 
     Args:
         scenes: every person with every load.
@@ -24,8 +25,9 @@ def effort_content(scenes: Sequence[Scene], cases: Sequence[CaseDetail]) -> tupl
 
 def _of(scenes: Sequence[Scene], case: CaseDetail) -> EffortContent:
     """Newtons as whole numbers, and what is not known as null."""
-    person = scene_of(scenes, case.case.pair).human
-    asked = ergonomics(person, case.hardest.agents[HUMAN])
+    people, hardest = scene_of(scenes, case.case.pair).people, case.hardest.agents
+    every = [ergonomics(person, hardest[person.name]) for person in people]
+    asked = max(every, key=lambda one: 0.0 if one.back is None else one.back.compression)
     back, tires = asked.back, asked.endurance
     return EffortContent(
         back_n=None if back is None else round(back.compression),

@@ -11,6 +11,7 @@ from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.floating_base import ROOT
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.check import AgentModel
+from evodesign.posture.design_checkers import with_hardware
 from evodesign.posture.terms.torque import asked
 from evodesign.records import CaseDetail, InstantDetail, Lift
 from evodesign.tree.model import Tree
@@ -26,19 +27,16 @@ class StaticTorques:
     wrenches of the hands.
 
     Args:
-        scenes: every person with every load, all with the same robot.
+        scenes: every team with every load, all with the same robots.
     """
 
     def __init__(self, scenes: Sequence[Scene]) -> None:
         self._scenes = scenes
 
     @cached_property
-    def _robot(self) -> AgentModel:
-        return _model(self._scenes[0].robot)
-
-    @cached_property
-    def _people(self) -> dict[tuple[str, str], list[AgentModel]]:
-        return {scene.pair: [_model(person) for person in scene.people] for scene in self._scenes}
+    def _models(self) -> dict[tuple[str, str], list[AgentModel]]:
+        known = {id(agent): _model(agent) for scene in self._scenes for agent in scene.agents}
+        return {scene.pair: [known[id(agent)] for agent in scene.agents] for scene in self._scenes}
 
     def of(
         self, robot: Tree, cases: Sequence[CaseDetail]
@@ -54,12 +52,13 @@ class StaticTorques:
         lifted = [isinstance(case.case.task, Lift) for case in cases]
         if not any(lifted):
             return (), {}
-        own = self._robot.resized(robot)
+        models = {pair: with_hardware(own, robot) for pair, own in self._models.items()}
         torques = tuple(
-            tuple(_static((own, *self._people[case.case.pair]), each) for each in case.instants if moves)
+            tuple(_static(models[case.case.pair], each) for each in case.instants if moves)
             for case, moves in zip(cases, lifted, strict=True)
         )
-        return torques, dict(own.agent.torque_limits) if own.agent.limits_torques else {}
+        own = self._scenes[0].robot
+        return torques, dict(own.torque_limits) if own.limits_torques else {}
 
 
 def _model(agent: Agent) -> AgentModel:

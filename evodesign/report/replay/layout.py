@@ -11,7 +11,6 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
-from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.records import CaseDetail
 from evodesign.report.replay.messages import WORLD, frame_id
 from evodesign.report.replay.recording import several, time_scale
@@ -19,7 +18,7 @@ from evodesign.report.replay.surfaces import topics_of
 from evodesign.report.scene_models import LOAD, SceneSet
 from evodesign.report.subset import ranked_joints
 
-SCENE, PLOTS = "3D!scene", {ROBOT: "Plot!robot", HUMAN: "Plot!human"}
+SCENE = "3D!scene"
 
 JOINTS_SHOWN: Final = 6
 """Lines of a plot."""
@@ -61,11 +60,9 @@ def layout_text(scene_set: SceneSet, cases: Sequence[CaseDetail]) -> str:
         scene_set: who stands there.
         cases: postures, whose torques choose the joints that are plotted.
     """
-    names = [name for name in PLOTS if name in scene_set.models[0].trees]
-    panels = {SCENE: _scene(scene_set, cases), **{PLOTS[name]: _plot(name, cases) for name in names}}
-    plots: Any = {"first": PLOTS[ROBOT], "second": PLOTS[HUMAN], "direction": "column", "splitPercentage": 50}
-    beside = plots if len(names) > 1 else PLOTS[ROBOT]
-    layout = {"first": SCENE, "second": beside, "direction": "row", "splitPercentage": 64}
+    plots = {f"Plot!{name}": _plot(name, cases) for name in scene_set.models[0].trees}
+    panels = {SCENE: _scene(scene_set, cases), **plots}
+    layout = {"first": SCENE, "second": _stacked([*plots]), "direction": "row", "splitPercentage": 64}
     whole = {
         "configById": panels,
         "globalVariables": {},
@@ -74,6 +71,20 @@ def layout_text(scene_set: SceneSet, cases: Sequence[CaseDetail]) -> str:
         "layout": layout,
     }
     return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
+
+
+def _stacked(panels: Sequence[str]) -> Any:
+    """Panels above each other, all of one height."""
+    first, *others = panels
+    if not others:
+        return first
+    share = 100 / len(panels)
+    return {
+        "first": first,
+        "second": _stacked(others),
+        "direction": "column",
+        "splitPercentage": int(share) if share.is_integer() else share,
+    }
 
 
 def _scene(scene_set: SceneSet, cases: Sequence[CaseDetail]) -> dict[str, Any]:

@@ -1,15 +1,15 @@
 """One case as messages: transforms, scenes of robot, person, load and wrenches, and joint states.
 
-Frames: `world`; `load`; `robot/LINK` and `human/LINK`, each a child of its parent link as in the tree, the
-root a child of `world`. Shapes and wrenches are primitives of a Foxglove scene, given in their link's frame,
-so that a scene stands where its frames do. Where a problem has several people or loads, each case first
-clears the person of the one before, whose links may be others, and its name stands above the load.
+Frames: `world`; `load`; `robot/LINK`, `human/LINK` and so on, each a child of its parent link as in the tree,
+the root a child of `world`. Shapes and wrenches are primitives of a Foxglove scene, given in their link's
+frame, so that a scene stands where its frames do. Where a problem has several people or loads, each case
+first clears the person of the one before, whose links may be others, and its name stands above the load.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
 from foxglove_schemas_protobuf.ArrowPrimitive_pb2 import ArrowPrimitive
@@ -48,16 +48,20 @@ ABOVE_LOAD: Final = (0.0, 0.0, 0.25)
 METRES_PER_NEWTON_METRE: Final = 0.02
 """Length of a moment's arrow."""
 
-TOPICS: Final[Mapping[str, Any]] = {
-    "/tf": FrameTransforms,
-    "/scene/robot": SceneUpdate,
-    "/scene/human": SceneUpdate,
-    "/scene/load": SceneUpdate,
-    "/scene/wrenches": SceneUpdate,
-    "/joint_states/robot": JointStates,
-    "/joint_states/human": JointStates,
-}
-"""The class of each topic's messages."""
+
+def topics(agents: Iterable[str]) -> dict[str, Any]:
+    """The class of each topic's messages.
+
+    Args:
+        agents: names of all of them.
+    """
+    names = [*agents]
+    return {
+        "/tf": FrameTransforms,
+        **{f"/scene/{name}": SceneUpdate for name in (*names, "load", "wrenches")},
+        **{f"/joint_states/{name}": JointStates for name in names},
+    }
+
 
 Rgba = tuple[float, float, float, float]
 
@@ -242,6 +246,6 @@ def pose_of(place: Placement) -> Any:
 
 
 def color_of(name: str) -> Any:
-    """A colour of `COLORS` as a message."""
-    red, green, blue, opacity = COLORS[name]
+    """A colour of `COLORS`, or of an agent by the role that its name begins with, as a message."""
+    red, green, blue, opacity = COLORS[name.partition("_")[0]]
     return Color(r=red, g=green, b=blue, a=opacity)

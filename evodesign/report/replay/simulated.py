@@ -39,7 +39,7 @@ def write_simulations(stream: IO[bytes], scene_set: SceneSet, simulations: Seque
     """
     if not simulations:
         raise InputError("--mcap", "", "a simulation to be shown", "none")
-    people = {name: tree for name, (_, tree) in scene_set.people_files.items()}
+    people = {name: tree for name, (_, tree) in scene_set.others_files.items()}
     attachments = {name: urdf_text(tree) for name, tree in {"robot.urdf": scene_set.robot, **people}.items()}
     about = {f"simulation {number}": each.name for number, each in enumerate(simulations)}
     write_frames(stream, scene_set, _frames(scene_set, simulations), attachments, about)

@@ -17,7 +17,7 @@ from google.protobuf.timestamp_pb2 import Timestamp
 
 from evodesign.body.placement import Placement
 from evodesign.mechanics.agent import ROBOT
-from evodesign.report.replay.messages import TOPICS, color_of, frame_id, pose_of
+from evodesign.report.replay.messages import color_of, frame_id, pose_of, topics
 from evodesign.report.scene_models import SceneSet
 from evodesign.tree.mesh_write import triangles_of, vertices_of
 from evodesign.tree.model import Link
@@ -28,12 +28,13 @@ MESHES: Final = "/scene/robot_meshes"
 
 def topics_of(scene_set: SceneSet) -> Mapping[str, Any]:
     """The class of each topic's messages in a recording."""
-    shown = any(link.shown for link in scene_set.robot.links)
-    return {**TOPICS, MESHES: SceneUpdate} if shown else TOPICS
+    found = topics(scene_set.models[0].trees)
+    shown = any(link.shown for _, tree in scene_set.robots for link in tree.links)
+    return {**found, MESHES: SceneUpdate} if shown else found
 
 
 def mesh_message(scene_set: SceneSet, nanoseconds: int) -> Any:
-    """A scene of the robot's meshes, an entity for each link that has some.
+    """A scene of the robots' meshes, an entity for each link that has some.
 
     Args:
         scene_set: with the robot of the design.
@@ -41,11 +42,14 @@ def mesh_message(scene_set: SceneSet, nanoseconds: int) -> Any:
     """
     now = Timestamp()
     now.FromNanoseconds(nanoseconds)
-    return SceneUpdate(entities=[_entity(link, now) for link in scene_set.robot.links if link.shown])
+    entities = [
+        _entity(name, link, now) for name, tree in scene_set.robots for link in tree.links if link.shown
+    ]
+    return SceneUpdate(entities=entities)
 
 
-def _entity(link: Link, now: Timestamp) -> SceneEntity:
-    frame = frame_id(ROBOT, link.name)
+def _entity(agent: str, link: Link, now: Timestamp) -> SceneEntity:
+    frame = frame_id(agent, link.name)
     entity = SceneEntity(timestamp=now, frame_id=frame, id=f"{frame} meshes", frame_locked=True)
     for mesh in link.shown:
         triangles = TriangleListPrimitive(

@@ -255,7 +255,7 @@ def test_slides_and_oblique_axes_move_as_in_our_kinematics(page: Tab, problem: D
         torques_n_m={},
         wrenches={},
     )
-    given = [msgspec.json.encode(part).decode() for part in (agent_body(agent), posture)]
+    given = [msgspec.json.encode(part).decode() for part in (agent_body(agent, {}), posture)]
     check_poses(page, f"window.evodesign.linkPoses('robot', {given[0]}, {given[1]})", tree, posture, 0.0)
 
 

@@ -117,7 +117,7 @@ const besideTorques = () =>
     joints.sort((a, b) => size(b) - size(a));
     if (!joints.length) return [];
     const lines = joints.map((joint) => [joint, one.get(joint), two.get(joint), "N m"]);
-    return [besideTable(`${AGENT_NAMES[agent]}: most |torque|`, lines)];
+    return [besideTable(`${agentName(agent)}: most |torque|`, lines)];
   });
 
 const drawBeside = () => {

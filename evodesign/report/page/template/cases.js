@@ -123,16 +123,18 @@ const caseTable = (design, agent) => {
 const caseSection = (design) => {
   if (!severalPairs) return null;
   const place = element("div", { class: "scroll-cases" });
-  let whose = "robot";
+  const roles = Object.keys(NORMS).filter((role) => role !== "human" || hasPeople());
+  let [whose] = roles;
   const draw = () => {
     const focused = place.contains(document.activeElement);
     place.replaceChildren(caseTable(design, whose));
     if (focused) place.querySelector('[aria-pressed="true"]')?.focus({ preventScroll: true });
   };
-  const whoseTorques = agentSegments("cases", (agent) => {
-    whose = agent;
+  const choose = (role) => {
+    whose = role;
     draw();
-  });
+  };
+  const whoseTorques = agentSegments("cases", choose, roles, (role) => (role === "robot" ? "Robot" : "Person"));
   const section = element(
     "details",
     { open: true },

@@ -129,7 +129,7 @@ const wrenchTable = (posture) => {
       element(
         "tr",
         { class: "group" },
-        element("th", { colspan: heads.length, scope: "rowgroup", text: AGENT_NAMES[agent] }),
+        element("th", { colspan: heads.length, scope: "rowgroup", text: agentName(agent) }),
       ),
       ...lines(one.wrenches),
     ),

@@ -3,18 +3,47 @@
 //     world_from_child = world_from_parent  parent_from_child  motion(axis, position)
 //
 // World frame: under the load, x from the robot to the person, z up. An agent's posture is given in its own
-// frame, which looks along +x at the load: the person's is the world's turned half round about z.
+// frame, which looks along +x at the load: the world's turned by quarters about z.
 
-// Who holds the load: a robot may do so alone.
-const agentsHere = () =>
-  content.bodies && !Object.keys(content.bodies.people).length ? ["robot"] : ["robot", "human"];
+const PAIR = [
+  { name: "robot", role: "robot", quarters: 0, designed: true },
+  { name: "human", role: "person", quarters: 2, designed: false },
+];
 
-const HALF_ROUND = [-1, 0, 0, 0, -1, 0, 0, 0, 1];
-const facing = (agent) => (agent === "human" ? HALF_ROUND : IDENTITY);
+// Everybody who holds the load; of a run whose problem is not known, those whom most have.
+const everyAgent = () => content.bodies?.agents ?? PAIR;
 
-// An agent's tree: the robot's with what the design changes, or that of the person of a name.
+const agentsHere = () => everyAgent().map(({ name }) => name);
+
+const roleOf = (name) => (name.startsWith("robot") ? "robot" : "person");
+
+const agentOf = (name) =>
+  everyAgent().find((one) => one.name === name) ?? { ...PAIR[0], name, role: roleOf(name) };
+
+const hasPeople = () => everyAgent().some(({ role }) => role === "person");
+
+// What an agent is called: by its role, with a number where there are several.
+const agentName = (name) => {
+  const { role } = agentOf(name);
+  const alike = everyAgent().filter((one) => one.role === role);
+  const number = alike.length > 1 ? ` ${alike.findIndex((one) => one.name === name) + 1}` : "";
+  return `${role === "robot" ? "Robot" : "Person"}${number}`;
+};
+
+const QUARTERS = [
+  [1, 0],
+  [0, 1],
+  [-1, 0],
+  [0, -1],
+];
+const facing = (agent) => {
+  const [cos, sin] = QUARTERS[agentOf(agent).quarters];
+  return [cos, -sin, 0, sin, cos, 0, 0, 0, 1];
+};
+
+// An agent's tree: the robot's with what the design changes, or that of somebody beside the person of a name.
 const treeOf = (agent, design, human) => {
-  if (agent !== "robot") return content.bodies.people[human];
+  if (!agentOf(agent).designed) return content.bodies.others[human][agent];
   const tree = content.bodies.robot;
   return {
     ...tree,

@@ -19,7 +19,7 @@ const limitRow = (limit) => {
     "tr",
     { "data-limit": limit.name, title: limit.key ?? "" },
     element("th", { scope: "row", text: capital(limitText(limit)) }),
-    element("td", { text: limit.agent ? AGENT_NAMES[limit.agent] : "Both" }),
+    element("td", { text: limit.agent ? agentName(limit.agent) : everyAgent().length > 2 ? "All" : "Both" }),
     element("td", { class: "number", text: figure(limit.price_n_m * size, 3) }),
     element("td", { text: unit }),
   );

@@ -23,7 +23,7 @@ const torqueLines = ({ postures, resting }, agent, design) => {
   const torques = postures.map((posture) => posture.agents[agent].torques_n_m);
   const most = (joint) => Math.max(...torques.map((one) => Math.abs(one[joint])));
   const joints = Object.keys(torques[0]).sort((a, b) => most(b) - most(a));
-  const limits = agent === "robot" ? (design.torque_limits ?? {}) : {};
+  const limits = agentOf(agent).designed ? (design.torque_limits ?? {}) : {};
   return joints.slice(0, MOST_LINES).map((joint) => ({
     name: withLimit(joint, limits[joint]),
     values: torques.map((one) => one[joint]),
@@ -95,7 +95,7 @@ const FEET = { left: -1, right: 1 };
 
 // Both soles from above, toes up, and the way of their centres of pressure.
 const drawPressure = (place, { times, postures }, agent, person) => {
-  const tree = agent === "robot" ? content.bodies.robot : content.bodies.people[person];
+  const tree = treeOf(agent, { links: {}, joints: {} }, person);
   const [length, width] = tree.sole_size_m;
   const [long, wide] = [length / 2, width / 2];
   const traces = Object.entries(FEET).flatMap(([side, sign], index) => {

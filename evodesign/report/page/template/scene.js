@@ -10,13 +10,14 @@ const sceneItems = (design, agents, at, height = at.height) => {
   const neutral = rgb("faint");
   const tints = {
     robot: [rgb("accent"), mixed(rgb("accent"), rgb("surface"), 0.52)],
-    human: [mixed(rgb("second"), neutral, 0.35), mixed(rgb("second"), neutral, 0.35)],
+    person: [mixed(rgb("second"), neutral, 0.35), mixed(rgb("second"), neutral, 0.35)],
   };
   for (const [agent, posture] of Object.entries(agents)) {
     const tree = treeOf(agent, design, at.person);
     const poses = linkPoses(agent, tree, posture);
+    const { role, designed } = agentOf(agent);
     tree.links.forEach((link, index) => {
-      const tint = tints[agent][agent === "robot" && !content.bodies.changing.includes(index) ? 1 : 0];
+      const tint = tints[role][designed && content.bodies.changing.includes(index) ? 0 : 1];
       const { rotation, position } = poses[index];
       for (const mesh of link.meshes ?? [])
         solid(

@@ -31,7 +31,7 @@ const stageOf = () => {
     { class: "legend" },
     key("var(--accent)", "robot: links that designs change"),
     key("color-mix(in srgb, var(--accent) 48%, var(--surface))", "other links"),
-    ...(agentsHere().includes("human")
+    ...(hasPeople()
       ? [key("color-mix(in srgb, var(--second) 65%, var(--faint))", "person")]
       : []),
     key("var(--third)", `force of the ground, 1 m for ${NEWTONS_PER_METRE} N`),
@@ -150,7 +150,7 @@ const showPosture = (number, design, moving) => {
     .setAttribute(
       "aria-label",
       posture
-        ? `Design ${number}${agentsHere().includes("human") ? " and the person" : ""} holding the load${severalPairs ? ":" : " at"} ${caseText(at)}. Arrow keys turn the view.`
+        ? `Design ${number}${hasPeople() ? " and the person" : ""} holding the load${severalPairs ? ":" : " at"} ${caseText(at)}. Arrow keys turn the view.`
         : missing.textContent,
     );
   const from = shownScene?.number === number ? shownScene : null;

@@ -1,7 +1,6 @@
 // Joint torques of a design with the person and load that are shown: boxes over the joints at each height,
 // beside the unscaled robot's (the paper's figure), and every joint at every height.
 
-const AGENT_NAMES = { robot: "Robot", human: "Person" };
 
 const torquesAt = (design, agent, stop) => {
   const posture = postureAt(design, { ...shownCase(), stop });
@@ -111,28 +110,28 @@ const drawJoints = (place, design, agent) => {
   );
 };
 
-// Whose torques: the robot's first, then the person's.
-const agentSegments = (name, choose) =>
+// Whose torques: those of robots first, then those of people.
+const agentSegments = (name, choose, agents = agentsHere(), called = agentName) =>
   element(
     "span",
     { class: "segments", role: "radiogroup", "aria-label": "Whose torques" },
-    ...agentsHere().map((agent) =>
+    ...agents.map((agent, place) =>
       element(
         "label",
         {},
         element("input", {
           type: "radio",
           name,
-          checked: agent === "robot",
+          checked: place === 0,
           onchange: () => choose(agent),
         }),
-        AGENT_NAMES[agent],
+        called(agent),
       ),
     ),
   );
 
 const torqueSection = (number, design) => {
-  let whose = "robot";
+  let [whose] = agentsHere();
   const boxes = element("div", { class: "joint-plot", role: "img" });
   const dots = element("div", { class: "joint-plot", role: "img" });
   const hint = element("p", { class: "hint" });
@@ -142,11 +141,11 @@ const torqueSection = (number, design) => {
     hint.textContent = `Sizes over all joints that move, one point per joint, at each height${pair ? `: ${pair}` : ""}.`;
     boxes.setAttribute(
       "aria-label",
-      `Box plot of the ${AGENT_NAMES[agent].toLowerCase()}'s joint torques at each height`,
+      `Box plot of the ${agentName(agent).toLowerCase()}'s joint torques at each height`,
     );
     dots.setAttribute(
       "aria-label",
-      `The ${AGENT_NAMES[agent].toLowerCase()}'s torque of each joint at each height`,
+      `The ${agentName(agent).toLowerCase()}'s torque of each joint at each height`,
     );
     drawBoxes(boxes, number, design, agent);
     drawJoints(dots, design, agent);

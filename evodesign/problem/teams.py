@@ -1,0 +1,97 @@
+"""Teams: which robots and people hold a load together, and what a team may be asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import product
+
+from evodesign.errors import InputError
+from evodesign.mechanics.agent import Agent
+from evodesign.problem.file import ProblemFile
+from evodesign.records import ProblemSource
+from evodesign.searches.base import JOINT_STARTS
+
+
+def teams_of(
+    tables: ProblemFile, source: ProblemSource, robots: Sequence[Agent], people: Sequence[Agent]
+) -> tuple[tuple[Agent, ...], ...]:
+    """Everyone who holds a load together, for every person of each side in turn.
+
+    Args:
+        tables: the problem file.
+        source: the problem, for messages.
+        robots: who all hold it.
+        people: those at one side are each other's alternatives, and have one name.
+    Raises:
+        InputError: two robots, or a robot and a person, at one side of the load.
+    """
+    taken: dict[int, str] = {}
+    for key, table in tables.robots.items():
+        for place, side in enumerate(table.sides):
+            if side.quarters in taken:
+                found = f"'{side}', where {taken[side.quarters]} stands"
+                raise InputError(source.path, f"{key}.sides[{place}]", "a side of its own", found)
+            taken[side.quarters] = f"a robot ({key})"
+    for key, person in tables.people.items():
+        if person.side.quarters in taken:
+            found = f"'{person.side}', where {taken[person.side.quarters]} stands"
+            raise InputError(source.path, f"{key}.side", "a side without a robot", found)
+    names = dict.fromkeys(person.name for person in people)
+    sides = [[person for person in people if person.name == name] for name in names]
+    return tuple((*robots, *chosen) for chosen in product(*sides))
+
+
+def refuse_what_teams_lack(tables: ProblemFile, source: ProblemSource, team: Sequence[Agent]) -> None:
+    """Refuse what only people answer of robots alone, and what only a pair does of other teams.
+
+    Args:
+        tables: the problem file.
+        source: the problem, for messages.
+        team: one of the problem's, which all have the same robots and as many people.
+    Raises:
+        InputError: naming the key.
+    """
+    robots = sum(len(table.sides) for table in tables.robots.values())
+    people = len(team) - robots
+    found = f"{_counted(robots, 'robot', 'robots')} and {_counted(people, 'person', 'people')}"
+    if not people:
+        for key in _needing_people(tables):
+            alone = "a robot that holds the load alone" if robots == 1 else found
+            raise InputError(source.path, key, "a [human] with it", alone)
+    for key, load in tables.loads.items():
+        for name, given, several in (
+            ("robot_grasps_m", load.robot_grasps_m, robots > 1),
+            ("human_grasps_m", load.human_grasps_m, people > 1),
+        ):
+            if given is not None and several:
+                raise InputError(source.path, f"{key}.{name}", "one agent whose hands these are", found)
+    if robots > 1 or people > 1:
+        for key in _needing_a_pair(tables):
+            raise InputError(source.path, key, "one robot and one person with it", found)
+
+
+def _counted(number: int, one: str, several: str) -> str:
+    return f"{number or 'no'} {one if number == 1 else several}"
+
+
+def _needing_people(tables: ProblemFile) -> Iterator[str]:
+    if tables.task.lift:
+        yield "task.lift"
+    if tables.search.algorithm == JOINT_STARTS:
+        yield "search.algorithm"
+    if tables.task.robot_share is not None:
+        yield "task.robot_share"
+    if tables.task.effort_weights is not None:
+        yield "task.effort_weights"
+    if tables.design.allocation:
+        yield "design.allocation"
+
+
+def _needing_a_pair(tables: ProblemFile) -> Iterator[str]:
+    if tables.task.lift:
+        yield "task.lift"
+    if tables.search.algorithm == JOINT_STARTS:
+        yield "search.algorithm"
+    for position, actuator in enumerate(tables.design.actuator):
+        if actuator.margin is not None:
+            yield f"design.actuator[{position}].margin"
