@@ -57,7 +57,7 @@ def preflight(problem: DesignProblem) -> tuple[Finding, ...]:
     welded = WeldedTree(robot.tree)
     equipped = WeldedTree(space.resized(robot.tree, space.given(space.unscaled(robot.tree), {})))
     items: dict[str, Callable[[], str]] = {
-        "stands on its soles": lambda: _stands(robot, welded),
+        "stands on its soles" if robot.on_feet else "stands on its wheels": lambda: _stands(robot, welded),
         "faces the load": lambda: _faces(problem),
         "has hands": lambda: _hands(robot, welded),
         "masses and limits": lambda: _masses(robot),
@@ -81,24 +81,26 @@ def _tried(name: str, item: Callable[[], str]) -> Finding:
 
 
 def _stands(robot: Agent, welded: WeldedTree) -> str:
-    bodies = [welded.body_of(robot.frame(f"{side}_foot")) for side in SIDES]
-    if bodies[0] is bodies[1]:
+    key = "robot.soles" if robot.on_feet else "robot.base"
+    bodies = [welded.body_of(foot.frame) for foot in robot.feet]
+    if robot.on_feet and bodies[0] is bodies[1]:
         wanted = "frames under two feet that move against each other"
         raise InputError("robot.soles", "", wanted, f"two of '{bodies[0].name}'")
-    places = [welded.places[robot.frame(f"{side}_foot")] for side in SIDES]
-    middle = [(a + b) / 2.0 for a, b in zip(*(place.translation for place in places), strict=True)]
+    places = [welded.places[foot.frame] for foot in robot.feet]
+    middle = [sum(along) / len(places) for along in zip(*(p.translation for p in places), strict=True)]
     center = total([body.inertia for body in welded.bodies.values() if body.inertia.mass]).center
     up = float(center[2] - middle[2]) / max(math.dist(center, middle), 1e-9)
     if up < UPRIGHT:
         wanted = "a robot upright on its soles while all joints are at zero, z up in its root link"
         found = f"its centre of mass {math.degrees(math.acos(max(-1.0, up))):.0f} degrees off the vertical"
-        raise InputError("robot.soles", "", wanted, found)
-    for side, place in zip(SIDES, places, strict=True):
+        raise InputError(key, "", wanted, found)
+    for foot, place in zip(robot.feet, places, strict=True):
         if place.rotation[2][2] < UPRIGHT:
             wanted = "a frame with z up and x ahead under the foot, such as one of [[robot.frames]]"
-            raise InputError(
-                f"robot.soles.{side}", "", wanted, f"'{robot.frame(f'{side}_foot')}', whose z axis is not up"
-            )
+            where = f"{key}.{foot.side or 'frame'}"
+            raise InputError(where, "", wanted, f"'{foot.frame}', whose z axis is not up")
+    if not robot.on_feet:
+        return f"centre of mass {center[2] - middle[2]:.2f} m above the ground"
     above = abs(places[0].translation[2] - places[1].translation[2])
     if above > UNEVEN:
         wanted = "soles at one height while all joints are at zero"
@@ -128,8 +130,9 @@ def _faces(problem: DesignProblem) -> str:
 
 
 def _hands(robot: Agent, welded: WeldedTree) -> str:
-    bodies = {side: welded.body_of(robot.frame(f"{side}_hand")) for side in SIDES}
-    if bodies["left"] is bodies["right"]:
+    frames = {hand.side: hand.frame for hand in robot.hands}
+    bodies = {side: welded.body_of(frame) for side, frame in frames.items()}
+    if len(bodies) > 1 and bodies["left"] is bodies["right"]:
         wanted = "frames in two hands that move against each other"
         raise InputError("robot.hands", "", wanted, f"two of '{bodies['left'].name}'")
     trunk = {body.name for name in robot.trunk for body in welded.chain(welded.body_of(name).name)}
@@ -138,9 +141,11 @@ def _hands(robot: Agent, welded: WeldedTree) -> str:
         moving = sum(each.joint is not None and each.joint.name in robot.joints for each in chain)
         if moving < FEWEST_JOINTS:
             wanted = f"a hand with at least {FEWEST_JOINTS} of robot.joints between it and the trunk"
-            found = f"{moving} before '{robot.frame(f'{side}_hand')}'"
+            found = f"{moving} before '{frames[side]}'"
             raise InputError(f"robot.hands.{side}", "", wanted, found)
-    left, right = (welded.places[robot.frame(f"{side}_hand")].translation for side in SIDES)
+    if len(frames) == 1:
+        return f"the {robot.hands[0].side} one alone"
+    left, right = (welded.places[frames[side]].translation for side in SIDES)
     _refuse_exchanged("robot.hands", left, right)
     return f"{math.dist(left, right):.2f} m apart"
 
@@ -178,7 +183,7 @@ def _changes(problem: DesignProblem, before: WeldedTree, index: int) -> str:
     mass = _mass(after) - _mass(before.tree)
     moved = {
         name: 1000.0 * math.dist(before.places[link].translation, _place(after, link).translation)
-        for name, link in (("hands", robot.frame("left_hand")), ("soles", robot.frame("left_foot")))
+        for name, link in (("hands", robot.hands[0].frame), ("soles", robot.feet[0].frame))
     }
     parts = [f"{name} by {distance:.0f} mm" for name, distance in moved.items() if distance >= 0.5]
     if not parts and abs(mass) < LEAST_CHANGE:

@@ -27,6 +27,9 @@ ROBOT, HUMAN = "robot", "human"
 
 SIDES = ("left", "right")
 
+BASE = "base"
+"""Name of the contact on which a robot without feet stands."""
+
 TO_THE_LEFT = {"left": 1.0, "right": -1.0, "": 0.0}
 """The direction along y of a side."""
 
@@ -53,11 +56,11 @@ class Contact:
     """Where an agent touches the ground or the load.
 
     Args:
-        name: unique in its agent, such as `left_hand`.
+        name: unique in its agent, such as `left_hand` or `base`.
         touched: what it touches.
         frame: of the agent; on the ground its z is the ground's normal.
         side: `left` or `right` of a pair of mirror images; empty on the middle line.
-        patch: of the sole that stands on the ground; None: a hand.
+        patch: on which it stands on the ground; None: a hand.
     """
 
     name: str
@@ -193,6 +196,11 @@ class Agent:
         return touching(self.contacts, Touched.LOAD)
 
     @property
+    def on_feet(self) -> bool:
+        """Whether it stands on a left and a right foot, and on no wheels."""
+        return len(self.feet) == len(SIDES)
+
+    @property
     def hand_frames(self) -> tuple[str, ...]:
         """The frames of its hands."""
         return tuple(hand.frame for hand in self.hands)
@@ -201,6 +209,12 @@ class Agent:
     def foot_frames(self) -> tuple[str, ...]:
         """The frames of its soles."""
         return tuple(foot.frame for foot in self.feet)
+
+    def mirrored(self, contact: Contact) -> Contact | None:
+        """The contact of the other side that touches the same; None of one that has none."""
+        alike = touching(self.contacts, contact.touched)
+        other = {"left": "right", "right": "left"}.get(contact.side)
+        return next((each for each in alike if each.side == other), None)
 
     def frame(self, contact: str) -> str:
         """The frame of a contact of a name."""

@@ -204,6 +204,10 @@ def half(agent: Agent) -> Form:
         ModelError: naming the links, joints or frames that differ.
     """
     mirror = mirror_of(agent.tree)
+    for each in agent.contacts:
+        if agent.mirrored(each) is None:
+            wanted = "hands and feet in pairs, one on each side"
+            raise ModelError(agent.tree.name, f"{agent.name}.{each.name}", wanted, "one alone")
     for noun, contacts in (("hands", agent.hands), ("soles", agent.feet)):
         frames = {each.side: each.frame for each in contacts}
         if mirror.links[frames["left"]] != frames["right"]:

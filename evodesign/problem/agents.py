@@ -18,9 +18,21 @@ from evodesign.human.anthropometry_tables import ShoulderWidth
 from evodesign.human.body import DEFAULT_JOINTS, HANDS, SOLES, TRUNK, human_tree
 from evodesign.human.population import population
 from evodesign.human.strength import joint_strengths, with_given
-from evodesign.mechanics.agent import HUMAN, ROBOT, SIDES, Agent, Gaze, Role, two_hands_two_feet
+from evodesign.mechanics.agent import (
+    BASE,
+    HUMAN,
+    ROBOT,
+    SIDES,
+    Agent,
+    Contact,
+    Gaze,
+    Role,
+    Touched,
+    two_hands_two_feet,
+)
 from evodesign.mechanics.contact import SoleSize
 from evodesign.problem.file import (
+    BaseTable,
     Facing,
     FrameTable,
     HandsTable,
@@ -57,11 +69,44 @@ def _robot(key: str, table: RobotTable, driven: Collection[str], source: Problem
     bare = read_urdf(source.files[table.urdf], table.urdf, table.inertia)
     seen = with_surfaces(bare, source.files, source.path) if table.meshes else bare
     tree = _with_frames(_turned(seen, table.facing), table.frames, key, source)
-    agent = _agent(Role.ROBOT, key, tree, table.hands, table.soles, table.trunk, table.joints, source)
+    if table.base is None:
+        standing = _feet(key, tree, table.soles or SolesTable(), source)
+    else:
+        standing = _on_wheels(key, table, tree, table.base, source)
+    contacts = (*standing, *_hands(key, tree, table.hands, source))
+    agent = _agent(Role.ROBOT, key, tree, contacts, table.trunk, table.joints, source)
     hard = table.torque_limits is TorqueLimits.HARD
     limits = torque_limits(key, table, driven, source, agent)
     bent = _bent(key, agent, table, source)
     return replace(agent, torque_limits=limits, limits_torques=hard, bent_ranges=bent)
+
+
+def _on_wheels(
+    key: str, table: RobotTable, tree: Tree, base: BaseTable, source: ProblemSource
+) -> tuple[Contact, ...]:
+    """The contact of a robot without feet."""
+    for other in ("soles", "knee_flexion_deg"):
+        if getattr(table, other) is not None:
+            raise InputError(source.path, f"{key}.{other}", "either this key or base", "both")
+    refuse_unknown(source, f"{key}.base.frame", "link", base.frame, tree.link_by_name, tree.name)
+    return (Contact(BASE, Touched.GROUND, base.frame, patch=SoleSize(*base.size_m)),)
+
+
+def _feet(key: str, tree: Tree, soles: SolesTable, source: ProblemSource) -> tuple[Contact, ...]:
+    for side in SIDES:
+        frame = getattr(soles, side)
+        refuse_unknown(source, f"{key}.soles.{side}", "link", frame, tree.link_by_name, tree.name)
+    size = SoleSize(*soles.size_m)
+    return tuple(Contact(f"{side}_foot", Touched.GROUND, getattr(soles, side), side, size) for side in SIDES)
+
+
+def _hands(key: str, tree: Tree, hands: HandsTable, source: ProblemSource) -> tuple[Contact, ...]:
+    frames = {side: getattr(hands, side) for side in SIDES if getattr(hands, side) is not None}
+    if not frames:
+        raise InputError(source.path, f"{key}.hands", "left, right, or both", "neither")
+    for side, frame in frames.items():
+        refuse_unknown(source, f"{key}.hands.{side}", "link", frame, tree.link_by_name, tree.name)
+    return tuple(Contact(f"{side}_hand", Touched.LOAD, frame, side) for side, frame in frames.items())
 
 
 def _bent(
@@ -164,7 +209,8 @@ def _of_table(key: str, table: HumanTable, source: ProblemSource) -> Agent:
         raise InputError(source.path, f"{key}.{lacking}", "the frames of this URDF", "nothing")
     bare = read_urdf(source.files[table.urdf], table.urdf, InertiaRule.FILE)
     tree = _with_frames(bare, table.frames, key, source)
-    return _agent(Role.PERSON, key, tree, table.hands, table.soles, table.trunk, table.joints, source)
+    contacts = (*_feet(key, tree, table.soles, source), *_hands(key, tree, table.hands, source))
+    return _agent(Role.PERSON, key, tree, contacts, table.trunk, table.joints, source)
 
 
 def _generated(key: str, table: HumanTable, source: ProblemSource) -> Agent:
@@ -178,10 +224,9 @@ def _generated(key: str, table: HumanTable, source: ProblemSource) -> Agent:
     except InputError as error:
         raise InputError(source.path, f"{key}.{error.key}", error.wanted, error.found) from error
     tree = _with_frames(human_tree(someone), table.frames, key, source)
-    hands = HandsTable(left=HANDS["left"], right=HANDS["right"])
-    soles = SolesTable(left=SOLES["left"], right=SOLES["right"], size_m=sole_size(someone))
+    contacts = two_hands_two_feet(HANDS, SOLES, SoleSize(*sole_size(someone)))
     joints = table.joints or DEFAULT_JOINTS
-    agent = _agent(Role.PERSON, key, tree, hands, soles, table.trunk or TRUNK, joints, source)
+    agent = _agent(Role.PERSON, key, tree, contacts, table.trunk or TRUNK, joints, source)
     return replace(agent, strengths=joint_strengths(someone))
 
 
@@ -202,19 +247,13 @@ def _agent(
     role: Role,
     table: str,
     tree: Tree,
-    hands: HandsTable,
-    soles: SolesTable,
+    contacts: tuple[Contact, ...],
     trunk: tuple[str, ...],
     joints: tuple[str, ...],
     source: ProblemSource,
 ) -> Agent:
-    frames = {
-        **{f"hands.{side}": getattr(hands, side) for side in SIDES},
-        **{f"soles.{side}": getattr(soles, side) for side in SIDES},
-        **{f"trunk[{i}]": frame for i, frame in enumerate(trunk)},
-    }
-    for key, frame in frames.items():
-        refuse_unknown(source, f"{table}.{key}", "link", frame, tree.link_by_name, tree.name)
+    for position, frame in enumerate(trunk):
+        refuse_unknown(source, f"{table}.trunk[{position}]", "link", frame, tree.link_by_name, tree.name)
     for position, joint in enumerate(joints):
         refuse_unknown(source, f"{table}.joints[{position}]", "moving joint", joint, tree.actuated, tree.name)
     if not (joints or tree.actuated):
@@ -224,11 +263,7 @@ def _agent(
         role=role,
         tree=tree,
         joints=joints or tree.actuated,
-        contacts=two_hands_two_feet(
-            {side: getattr(hands, side) for side in SIDES},
-            {side: getattr(soles, side) for side in SIDES},
-            SoleSize(*soles.size_m),
-        ),
+        contacts=contacts,
         trunk=trunk,
     )
 

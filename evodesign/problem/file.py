@@ -34,10 +34,21 @@ MOST_SAMPLES = 1000
 
 
 class HandsTable(Table, frozen=True):
-    """Frames that meet the load."""
+    """Frames that meet the load: of both hands, or of the one that holds it."""
 
-    left: Name = "l_hand_frame"
-    right: Name = "r_hand_frame"
+    left: Name | None = None
+    right: Name | None = None
+
+
+ICUB_HANDS = HandsTable(left="l_hand_frame", right="r_hand_frame")
+"""Those of a robot that names none."""
+
+
+class BaseTable(Table, frozen=True):
+    """The frame on the ground of a robot on wheels, z up, and the rectangle about it on which it stands."""
+
+    frame: Name
+    size_m: tuple[Positive, Positive]
 
 
 class SolesTable(Table, frozen=True):
@@ -106,7 +117,8 @@ class RobotTable(Table, frozen=True):
     which the robot looks. `packages` are folders in which `package://` and `model://` are found, beside those
     of the environment; `meshes = false` leaves out what the URDF shows as meshes. `knee_flexion_deg` and
     `elbow_flexion_deg` are the least angles of knees and elbows in postures, zero for straight limbs; left
-    out, joints take their whole ranges. One like it stands at each of `sides`.
+    out, joints take their whole ranges. One like it stands at each of `sides`. A robot on wheels has a `base`
+    in place of `soles`.
     """
 
     urdf: Name
@@ -116,8 +128,9 @@ class RobotTable(Table, frozen=True):
     facing: Facing = Facing.FORWARD
     inertia: InertiaRule = InertiaRule.AUTO
     frames: tuple[FrameTable, ...] = ()
-    hands: HandsTable = HandsTable()
-    soles: SolesTable = SolesTable()
+    hands: HandsTable = ICUB_HANDS
+    soles: SolesTable | None = None
+    base: BaseTable | None = None
     trunk: tuple[Name, ...] = ("root_link", "chest")
     joints: tuple[Name, ...] = ()
     torque_limits: TorqueLimits = TorqueLimits.NONE

@@ -64,33 +64,25 @@ def _payload(key: str, table: PayloadTable, source: ProblemSource) -> Payload:
     )
 
 
-def held_alone(load: Payload, agent: Agent) -> Payload:
-    """A load that somebody holds alone: by the middles of its sides, unless the file says where.
-
-    Hands in points on its near edge would not balance it.
-    """
-    width = load.size[1]
-    places = {
-        (agent.name, hand.name): (0.0, width / 2.0 * TO_THE_LEFT[hand.side], 0.0) for hand in agent.hands
-    }
-    return replace(load, grasp_points={**places, **load.grasp_points})
-
-
 def held_by(load: Payload, team: Sequence[Agent]) -> Payload:
     """A load as a team holds it, where the file does not say where.
 
     Who holds it alone does so by the middles of its sides: hands in points on its near edge would not balance
-    it. Who has somebody at a neighbouring side keeps away from the corner between them.
+    it. One hand is in the middle: of the top, or of the near edge beside others. Who has somebody at a
+    neighbouring side keeps away from the corner between them.
     """
-    if len(team) == 1:
-        return held_alone(load, team[0])
     points: dict[tuple[str, str], Vector] = {}
     for agent in team:
-        if any((each.quarters - agent.quarters) % 2 for each in team):
-            depth, width, height = load.faced(agent)
-            for hand in agent.hands:
-                place = (-depth / 2.0, FROM_CORNERS * width * TO_THE_LEFT[hand.side], height / 2.0)
-                points[agent.name, hand.name] = agent.to_world(place)
+        depth, width, height = load.faced(agent)
+        ahead, up, out = -depth / 2.0, height / 2.0, FROM_CORNERS * width
+        if len(team) == 1:
+            ahead, up, out = (0.0, 0.0, width / 2.0) if len(agent.hands) > 1 else (0.0, up, 0.0)
+        elif len(agent.hands) == 1:
+            out = 0.0
+        elif not any((each.quarters - agent.quarters) % 2 for each in team):
+            continue
+        for hand in agent.hands:
+            points[agent.name, hand.name] = agent.to_world((ahead, out * TO_THE_LEFT[hand.side], up))
     return replace(load, grasp_points={**points, **load.grasp_points})
 
 

@@ -82,6 +82,7 @@ class ContactWrench:
         point: where the force acts [m].
         force: [N].
         moment: about the point [N m].
+        by_ground: whether the ground acts, and not the load.
     """
 
     agent: str
@@ -89,11 +90,7 @@ class ContactWrench:
     point: Vector
     force: Vector
     moment: Vector
-
-    @property
-    def by_ground(self) -> bool:
-        """Whether the ground acts, and not the load."""
-        return self.contact.endswith("_foot")
+    by_ground: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,12 +167,12 @@ def _wrenches(
     for hand in agent.hands:
         force, moment = _halves(posture.wrenches[hand.name])
         turned = (rotate(world_from_agent.rotation, force), rotate(world_from_agent.rotation, moment))
-        found.append(ContactWrench(agent.name, hand.name, frames[hand.frame].translation, *turned))
+        found.append(ContactWrench(agent.name, hand.name, frames[hand.frame].translation, *turned, False))
     for foot in agent.feet:
         sole = frames[foot.frame]
         point, force, moment = _at_center_of_pressure(*_halves(posture.wrenches[foot.name]))
         turned = (rotate(sole.rotation, force), rotate(sole.rotation, moment))
-        found.append(ContactWrench(agent.name, foot.name, sole.apply(point), *turned))
+        found.append(ContactWrench(agent.name, foot.name, sole.apply(point), *turned, True))
     return found
 
 

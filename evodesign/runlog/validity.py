@@ -27,7 +27,9 @@ AGENTS: Final = frozenset(
 )
 """Who may hold a load: one at each of its four sides."""
 
-CONTACTS: Final = frozenset(f"{side}_{part}" for side in ("left", "right") for part in ("hand", "foot"))
+HANDS: Final = frozenset(("left_hand", "right_hand"))
+STANDING: Final = (frozenset(("left_foot", "right_foot")), frozenset(("base",)))
+"""Contacts with the load, of which there is one at least, and with the ground."""
 
 LARGEST_NUMBER: Final = 10**9
 """More evaluations than any run has: what is counted and listed stays bounded."""
@@ -147,9 +149,11 @@ def _instant(instant: InstantDetail) -> str:
 
 
 def _complete(agent: AgentDetail | LoadCaseDetail) -> bool:
-    """Whether places have three components, and there is a wrench of six for each hand and foot."""
+    """Whether places have three components, and there is a wrench of six for each contact."""
     places = (agent.base_position_m, agent.base_rpy_rad) if isinstance(agent, AgentDetail) else ()
-    whole = agent.wrenches.keys() == CONTACTS and all(len(each) == 6 for each in agent.wrenches.values())
+    contacts = agent.wrenches.keys()
+    placed = not HANDS.isdisjoint(contacts) and contacts - HANDS in STANDING
+    whole = placed and all(len(each) == 6 for each in agent.wrenches.values())
     return whole and all(len(place) == 3 for place in places)
 
 

@@ -4,6 +4,8 @@
     asset    <mesh> for each mesh file
     key      position and quaternion of the root, then the joints in the order in which the file holds them
 
+Moments that no body can have are balanced by MuJoCo, which refuses them otherwise (`balanceinertia`).
+
 A link that is nothing but what lies between two joints is no body: its joint stands in the next one.
 
 The robot's geoms touch the ground and not each other: neighbouring shapes overlap at the joints. A link of
@@ -18,7 +20,9 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+import numpy as np
 from lxml import etree
+from numpy.typing import NDArray
 
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement, quaternion_wxyz, rotate
@@ -32,6 +36,9 @@ from evodesign.tree.urdf_write import numbers_text
 KINDS = {JointKind.REVOLUTE: "hinge", JointKind.CONTINUOUS: "hinge", JointKind.PRISMATIC: "slide"}
 TOUCHES_GROUND: dict[str, str] = {"contype": "0", "conaffinity": "1"}
 TOUCHES_NOTHING: dict[str, str] = {"contype": "0", "conaffinity": "0"}
+SMALL = 1e-3
+"""Radius of gyration [m] that MuJoCo is given of a link that has a mass and no moments of inertia."""
+
 COLOR = "0.36 0.52 0.70 1"
 
 
@@ -63,7 +70,9 @@ def mjcf_text(
     """
     _check(tree)
     model = etree.Element("mujoco", model=tree.name)
-    etree.SubElement(model, "compiler", angle="radian", autolimits="true", inertiafromgeom="false")
+    compiler = etree.SubElement(model, "compiler", angle="radian", autolimits="true", inertiafromgeom="false")
+    if any(link.inertia.mass and not _is_possible(link.inertia) for link in tree.links):
+        compiler.set("balanceinertia", "true")
     etree.SubElement(model, "option", gravity=numbers_text([0.0, 0.0, -gravity]))
     if meshes:
         asset = etree.SubElement(model, "asset")
@@ -155,11 +164,24 @@ def _add_joint(body: etree._Element, joint: Joint, body_from_joint: Placement) -
         element.set("armature", numbers_text([joint.actuator.inertia]))
 
 
+def _principal(inertia: Inertia) -> NDArray[np.float64]:
+    """Moments about the principal axes, the smallest first [kg m^2]."""
+    return np.linalg.eigvalsh(np.array(inertia.about_center, float))
+
+
+def _is_possible(inertia: Inertia) -> bool:
+    """Whether a body could have these moments: none is larger than the other two together."""
+    small, middle, large = _principal(inertia)
+    return bool(small > 0.0 and small + middle >= large)
+
+
 def _add_inertial(body: etree._Element, inertia: Inertia) -> None:
     if float(inertia.mass) == 0.0:
         return
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertia.about_center
-    moments = numbers_text([xx, yy, zz, xy, xz, yz])
+    least = float(_principal(inertia)[0])
+    more = 0.0 if least > 0.0 else float(inertia.mass) * SMALL**2 - least
+    moments = numbers_text([xx + more, yy + more, zz + more, xy, xz, yz])
     etree.SubElement(
         body,
         "inertial",

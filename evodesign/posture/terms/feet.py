@@ -84,7 +84,9 @@ def _contact_bounds(body: Body, sole: SoleSize, pressing: Expression) -> tuple[B
         pressing: normal force of the foot [N]; a larger friction or sole widens the margins in proportion.
     """
     ground, name = body.scene.ground, "centre of pressure"
-    share, key = -pressing / MARGIN_UNIT, "robot.soles.size_m" if body.agent.role is Role.ROBOT else ""
+    share, key = -pressing / MARGIN_UNIT, ""
+    if body.agent.role is Role.ROBOT:
+        key = "robot.soles.size_m" if body.agent.on_feet else "robot.base.size_m"
     lifted = Bound(
         "foot force", ground.least_force, "N", False, 1.0 / MARGIN_UNIT, "limits.least_foot_force_n"
     )

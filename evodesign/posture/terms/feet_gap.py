@@ -24,7 +24,7 @@ NAME = "feet_gap"
 def rows(body: Body) -> Iterator[Row]:
     """Sideways distances of inner corners [m]; in a symmetric posture from those of the mirror image."""
     gap = body.scene.stance.feet_gap
-    if gap is None:
+    if gap is None or not body.agent.on_feet:
         return
     inner = [_inner_corners(body, foot) for foot in body.form.feet]
     if body.form.mirror is None:
@@ -49,7 +49,7 @@ def _corners(size: SoleSize) -> list[tuple[float, float]]:
 def residuals(body: MeasuredBody) -> Iterator[Residual]:
     """By how much the soles come too near [m]."""
     gap = body.scene.stance.feet_gap
-    if gap is None:
+    if gap is None or not body.agent.on_feet:
         return
     (left, half_left), (right, half_right) = (_sideways(body, foot) for foot in body.agent.feet)
     missing = max(0.0, gap - (left - half_left - right - half_right))

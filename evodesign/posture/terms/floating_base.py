@@ -27,7 +27,11 @@ def unknowns(form: Form, scene: Scene) -> Iterator[Unknown]:
     lower, upper = zip(*coordinate_ranges(form), strict=True)
     yield Unknown(
         "base_position",
-        [-3.0, -sideways, 0.0],
+        [
+            -3.0,
+            -sideways,
+            0.0 if form.agent.on_feet else -1.0,
+        ],  # the root of a robot on wheels is on the ground
         [0.0, sideways, 3.0],
         _standing(form.agent, scene),
         posture_only=True,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import casadi as ca
 
 from evodesign.posture.limit_groups import LimitGroup
@@ -19,9 +21,9 @@ def posture_cost(body: Body) -> Expression:
 
 def wrench_cost(body: Body) -> Expression:
     """Sideways and twisting hands and unequal feet, slightly disliked."""
-    hands, feet = body.hands.values(), body.feet
+    hands, feet = body.hands.values(), [*body.feet.values()]
     lateral = sum(ca.sumsqr(wrench[:2]) + ca.sumsqr(wrench[3:]) for wrench in hands) / HAND_UNIT**2
-    unequal = ca.sumsqr(ca.minus(*feet.values())) / FORCE_UNIT**2 if body.form.mirror is None else 0.0
+    unequal = sum(ca.sumsqr(one - other) for one, other in pairwise(feet)) / FORCE_UNIT**2
     return REGULARISATION * (lateral + unequal)
 
 

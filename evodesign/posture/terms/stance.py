@@ -26,6 +26,8 @@ def rows(body: Body) -> Iterator[Row]:
         bounds = [Bound("trunk clearance", clear, "m", False, -1.0, key, frame) for frame in form.trunk]
         row = _row("trunk_clear", trunk, -np.inf, _nearest(body), most=tuple(bounds))
         yield replace(row, labels=form.trunk)
+    if not body.agent.on_feet:
+        return
     (least, most), name, key = stance.feet_apart, "feet apart", "limits.feet_apart_m"
     ends = Bound(name, least, "m", False, key=key), Bound(name, most, "m", True, key=key)
     if form.mirror is not None:  # the right sole is the left one's mirror image
@@ -59,15 +61,18 @@ def _nearest(body: Body | MeasuredBody) -> float:
 def residuals(body: MeasuredBody) -> Iterator[Residual]:
     """Distances [m] by which feet and trunk are where they should not be."""
     state, stance = body.state, body.scene.stance_of(body.agent)
-    left, right = (state.pose(foot.frame)[1] for foot in body.agent.feet)
-    ahead, apart, _ = (left - right).tolist()
-    least, most = stance.feet_apart
     trunk = [float(state.pose(name)[1][0]) - _nearest(body) for name in body.agent.trunk]
-    for name, size, words in (
-        ("feet_apart", max(0.0, least - apart, apart - most), "the feet's distance"),
-        ("feet_stagger", max(0.0, abs(ahead) - stance.feet_stagger), "the feet's stagger"),
-        ("trunk_clear", max(0.0, *trunk, 0.0), "the trunk's distance from the load"),
-    ):
+    found = [("trunk_clear", max(0.0, *trunk, 0.0), "the trunk's distance from the load")]
+    if body.agent.on_feet:
+        left, right = (state.pose(foot.frame)[1] for foot in body.agent.feet)
+        ahead, apart, _ = (left - right).tolist()
+        least, most = stance.feet_apart
+        found = [
+            ("feet_apart", max(0.0, least - apart, apart - most), "the feet's distance"),
+            ("feet_stagger", max(0.0, abs(ahead) - stance.feet_stagger), "the feet's stagger"),
+            *found,
+        ]
+    for name, size, words in found:
         yield Residual(name, size, "m", words, LimitGroup.STANCE, posture_only=True)
 
 
