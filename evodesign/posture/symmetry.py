@@ -258,15 +258,15 @@ def symmetric_forms(scene: Scene) -> tuple[Form, ...]:
         found = f"y = {payload.center_of_mass[1]:g} m"
         raise ModelError("payload", "center_of_mass_m", "y = 0 in a symmetric scene", found)
     for agent in scene.agents:
-        left, right = (payload.grasp_point(agent, hand) for hand in agent.hands)
-        if tuple(left) != (right[0], -right[1], right[2]):
-            key = f"{agent.name}_grasps_m"
-            raise ModelError("payload", key, "mirror images in a symmetric scene", f"{left} and {right}")
-    for agent in scene.agents:
         if agent.quarters % 2:
             found = f"{agent.name} beside it, who looks across it"
             raise ModelError(agent.tree.name, "", "agents before and behind a symmetric load", found)
     forms = tuple(map(half, scene.agents))
+    for agent in scene.agents:
+        left, right = (payload.grasp_point(agent, hand) for hand in agent.hands)
+        if tuple(left) != (right[0], -right[1], right[2]):
+            key = f"{agent.name}_grasps_m"
+            raise ModelError("payload", key, "mirror images in a symmetric scene", f"{left} and {right}")
     for disturbance in scene.disturbances.cases:
         _refuse_lopsided(disturbance, forms)
     return forms
