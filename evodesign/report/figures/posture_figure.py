@@ -151,16 +151,18 @@ def _rows(stages: Sequence[PlacedScene]) -> list[list[PlacedScene | None]]:
     return [[found.get((pair, moment)) for moment in moments] for pair in pairs]
 
 
-def _moment(stage: PlacedScene) -> tuple[float, str, float, bool]:
-    """Of whatever person and load, in the order of panels: the robot before a person who is drawn alone."""
-    return stage.task.heights[0], str(stage.task), stage.time, ROBOT not in stage.models.trees
+def _moment(stage: PlacedScene) -> tuple[float, str, float, int]:
+    """Of whatever person and load, in the order of panels: agents that are drawn alone in their own order."""
+    names, first = [agent.name for agent in stage.models.agents], next(iter(stage.models.trees))
+    return stage.task.heights[0], str(stage.task), stage.time, names.index(first)
 
 
 def _heading(stage: PlacedScene) -> str:
     who = stage.models.label
     if len(stage.models.trees) == 1:
         (name,) = stage.models.trees
-        who = f"{WORDS[name]} with {who}" if name == ROBOT and who else who or WORDS[name]
+        word = f"{WORDS[_role(name)]}{name.removeprefix(_role(name)).replace('_', ' ')}"
+        who = f"{word} with {who}" if _role(name) == ROBOT and who else who or word
     place = f"load at {stage.place}"
     return f"{who}\n{place}" if who else place
 
@@ -213,8 +215,13 @@ def _painted_meshes(stage: PlacedScene, view: Camera, light: Array) -> Iterator[
 def _shade(name: str, slope: float) -> tuple[float, float, float]:
     """An agent's colour in the light: darker where a face turns away from it."""
     brightness = 0.62 + 0.43 * max(slope, -0.2)
-    red, green, blue = (min(channel * brightness, 1.0) for channel in to_rgb(AGENTS[name]))
+    red, green, blue = (min(channel * brightness, 1.0) for channel in to_rgb(AGENTS[_role(name)]))
     return red, green, blue
+
+
+def _role(name: str) -> str:
+    """What an agent is, which its name begins with."""
+    return name.partition("_")[0]
 
 
 def _longest(stages: Sequence[PlacedScene], by_ground: bool) -> float:
@@ -244,7 +251,7 @@ def _limits(stages: Sequence[PlacedScene], view: Camera) -> tuple[Array, Array]:
 
 def _key(figure: Figure, axes: Axes, stages: Sequence[PlacedScene], longest: Mapping[bool, float]) -> None:
     """Who is who, and how long arrows are."""
-    drawn = {*itertools.chain.from_iterable(stage.models.trees for stage in stages), LOAD}
+    drawn = {*map(_role, itertools.chain.from_iterable(stage.models.trees for stage in stages)), LOAD}
     who = [Patch(color=color, label=WORDS[name]) for name, color in AGENTS.items() if name in drawn]
     kinds = {True: "force on the feet", False: "force on the hands"}
     arrows = [

@@ -1,6 +1,6 @@
 """Postures from the side and from the front, without perspective, with a scale in metres.
 
-From the front, robot and person would hide each other: each is drawn alone, turned so that it looks at the
+From the front, agents would hide each other: each is drawn alone, turned so that it looks at the
 camera with the load between them.
 """
 
@@ -19,6 +19,9 @@ from evodesign.report.scene_models import ContactWrench, PlacedScene
 SIDE = Camera(azimuth=-math.pi / 2.0, elevation=0.0)
 """From the robot's right: it stands on the left and looks to the right."""
 
+PAIR = 2
+"""Agents of whom each has one other."""
+
 FRONT = Camera(azimuth=0.0, elevation=0.0)
 """Into the face of whoever looks along +x."""
 
@@ -29,16 +32,16 @@ def side_figure(stages: Sequence[PlacedScene], title: str) -> Figure:
 
 
 def front_figure(stages: Sequence[PlacedScene], title: str) -> Figure:
-    """Robot and person, each alone with the load and from the front, two panels per height or moment."""
+    """Each agent alone with the load and from the front, a panel for each per height or moment."""
+    pair = all(len(stage.models.agents) == PAIR for stage in stages)
+    who = "robot and person each without the other" if pair else "each without the others"
     return posture_figure(
-        [one for stage in stages for one in alone(stage)],
-        f"{title} from the front, robot and person each without the other",
-        FRONT,
+        [one for each in stages for one in alone(each)], f"{title} from the front, {who}", FRONT
     )
 
 
 def alone(stage: PlacedScene) -> Iterator[PlacedScene]:
-    """Robot, then person, each without the other and looking along +x."""
+    """Each agent without the others and looking along +x."""
     for agent in stage.models.agents:
         turn = Placement.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, 0.0, -agent.facing))
         frames = {link: turn @ frame for link, frame in stage.frames[agent.name].items()}
