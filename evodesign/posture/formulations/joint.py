@@ -332,7 +332,8 @@ class JointPostures:
         people: Sequence[Start] = (),
     ) -> Trial:
         parameters = {"design": design, **self._beside(task)}
-        ends = self._ends(parameters, starts)
+        names, given = [name for name, _ in starts], [self._begun(start, parameters) for _, start in starts]
+        ends = [*zip(names, self._seeker.ends(parameters, given), strict=True)]
         solved = [end for end in ends if end[1].status is Status.SOLVED]
         ends += self._exchanged(parameters, solved)
         if solved:
@@ -380,14 +381,6 @@ class JointPostures:
         instants = self._instants(raw, task)
         residuals = checker.task_residuals(instants, task.heights)
         return Candidate(checked(self.name, start, raw, residuals), instants, residuals, raw)
-
-    def _ends(
-        self, parameters: Mapping[str, Any], starts: Sequence[tuple[str, Start]]
-    ) -> list[tuple[str, RawSolution]]:
-        """Where starts lead to."""
-        given = [(name, self._begun(start, parameters)) for name, start in starts]
-        raws = self._seeker.ends(parameters, [start for _, start in given])
-        return [(name, raw) for (name, _), raw in zip(given, raws, strict=True)]
 
     def _begun(self, start: Start, parameters: Mapping[str, Any]) -> Start:
         """A start in which disturbed load cases begin as the undisturbed one, and s with them."""

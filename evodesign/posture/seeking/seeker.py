@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -45,10 +46,9 @@ class Seeker:
 
     def ends(self, parameters: Parameters, starts: Sequence[Mapping[str, Array]]) -> list[RawSolution]:
         """Where starts lead to; solves that take long are given up unless all of them do."""
-        if len(starts) == 1:
-            return [self.solver.solve(parameters, start) for start in starts]
-        ends = [self.brief.solve(parameters, start) for start in starts]
-        if any(raw.status is Status.SOLVED for raw in ends):
+        solver = self.brief if len(starts) > 1 else self.solver
+        ends = [*map(functools.partial(solver.solve, parameters), starts)]
+        if len(starts) == 1 or any(raw.status is Status.SOLVED for raw in ends):
             return ends
         return [
             self.solver.solve(parameters, start) if raw.status is Status.ITERATION_LIMIT else raw
