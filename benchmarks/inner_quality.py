@@ -206,7 +206,7 @@ def main() -> None:
     options = parser.parse_args()
     problem = problem_named(options.problem)
     known_at(problem, options.jobs)
-    built, given = can_be_built(problem.scene.robot, problem.space), problem.space.given
+    built, given = can_be_built(problem.scene, problem.space), problem.space.given
     drawn = random_designs(problem, 10 * options.designs)
     designs = list(islice((each for each in drawn if built(tuple(given(each, {})))), options.designs))
     joint = 0 if problem.symmetry is Symmetry.OFF else options.joint_designs

@@ -45,7 +45,7 @@ def usual_designs(run: RunLog) -> tuple[int, ...]:
 
 def usual_reference(problem: DesignProblem, run: RunLog) -> int | None:
     """Number of the unscaled robot in a run; None where the run has it not."""
-    wanted = problem.space.named(problem.space.unscaled(problem.scene.robot.tree))
+    wanted = problem.space.named(problem.space.unscaled(problem.scene.designed_tree))
     designs = ((each.number, each.assessment.design) for each in run.evaluations)
     return next((n for n, own in designs if alike((own[name] for name in wanted), wanted.values())), None)
 

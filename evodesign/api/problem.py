@@ -102,7 +102,7 @@ class Problem:
         self.objectives: tuple[Objective, ...] = problem.objectives
         self.constraints: tuple[Constraint, ...] = problem.constraints
         self.unscaled: Mapping[str, float] = problem.space.named(
-            problem.space.unscaled(problem.scene.robot.tree)
+            problem.space.unscaled(problem.scene.designed_tree)
         )
 
     @classmethod

@@ -66,7 +66,7 @@ def simulate(
     values, feedback = problem.values(given), Feedback(frequency, damping)
     found = problem._evaluator.assess_values(values)
     built, space = problem.built, problem.built.space
-    robot = space.resized(built.scene.robot.tree, space.given(values, found.assessment.rated_torques))
+    robot = space.resized(built.scene.designed_tree, space.given(values, found.assessment.rated_torques))
     if from_m is None or to_m is None:
         holds = picked_holds(found.cases, heights_m)
         time = HOLD_SECONDS if seconds is None else seconds

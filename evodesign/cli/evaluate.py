@@ -87,7 +87,7 @@ def _spread(built: DesignProblem, values: tuple[float, ...], jobs: int) -> Peopl
     from evodesign.cli.progress import precompute_progress
     from evodesign.evaluation.sampled_designs import sampled_beside
 
-    designs = tuple(dict.fromkeys((values, built.space.unscaled(built.scene.robot.tree))))
+    designs = tuple(dict.fromkeys((values, built.space.unscaled(built.scene.designed_tree))))
     show_notes([f"{built.samples} samples of people: {built.samples * len(designs)} further evaluations"])
     with precompute_progress() as progress:
         sampled = sampled_beside(built, designs, jobs, progress)
@@ -125,7 +125,7 @@ def _named_design(
     from evodesign.problem.designs import read_designs
     from evodesign.problem.named_files import read_text
 
-    tree = problem.scene.robot.tree
+    tree = problem.scene.designed_tree
     if file is None:
         if name is not None and name != UNSCALED:
             raise InputError("--name", "", "a --design FILE that holds it", "no file")

@@ -117,7 +117,7 @@ class Baseline:
             scenes=problem.scenes,
             space=problem.space,
             values=solution.design,
-            tree=problem.space.resized(problem.scene.robot.tree, solution.design),
+            tree=problem.space.resized(problem.scene.designed_tree, solution.design),
             reach=_reach(solution),
             cases=solution.cases,
             paper=problem.joint,
@@ -165,7 +165,7 @@ def held_at(problem: DesignProblem, genome: Genome, tasks: Sequence[Hold]) -> Jo
 
 def torque_difference(problem: DesignProblem, solution: JointSolution) -> float:
     """Largest difference of a solution's torques from the paper's formula at its postures [N m]."""
-    tree = problem.space.resized(problem.scene.robot.tree, solution.design)
+    tree = problem.space.resized(problem.scene.designed_tree, solution.design)
     model = CoupledModel(problem.scene, tree)
     worst = 0.0
     for case in solution.cases:

@@ -53,7 +53,7 @@ class DesignSolver:
     def __init__(self, problem: DesignProblem, known: Precomputed, inner: InnerProblems) -> None:
         self.problem, self.known, self.inner = problem, known, inner
         scene, space = problem.scene, problem.space
-        self.family = space.family(scene.robot.tree)
+        self.family = space.family(scene.designed_tree)
         self.tree = self.family.tree
         self.robots = tuple(
             AgentModel.of(robot, self.tree if robot.designed else robot.tree) for robot in scene.robots
@@ -82,7 +82,7 @@ class DesignSolver:
     @cached_property
     def usual(self) -> Mapping[str, float]:
         """What the unscaled robot asks of sized actuators [N m], by parameter; nothing if it holds none."""
-        values = self.problem.space.unscaled(self.problem.scene.robot.tree)
+        values = self.problem.space.unscaled(self.problem.scene.designed_tree)
         design = _OneDesign(self, values)
         found = sized_result(self.problem.space, values, design.sized_robot, design)
         return {} if found.demand is None else found.demand.at(found.demand.sizes)
@@ -99,7 +99,7 @@ class DesignSolver:
     def near(self) -> tuple[StanceTorques, ...]:
         """The unscaled robot in each standing case."""
         space = self.problem.space
-        unscaled = space.given(space.unscaled(self.problem.scene.robot.tree), {})
+        unscaled = space.given(space.unscaled(self.problem.scene.designed_tree), {})
         return tuple(found for _, found in self.alone.torques(self.family.resized(unscaled)))
 
     @cached_property
@@ -122,12 +122,17 @@ class _OneDesign:
         self._solver, self._problem, self._values = solver, solver.problem, values
         self._tree = solver.family.without_actuators(values)
         self._robots = with_hardware(solver.robots, self._tree)
-        self._robot = self._robots[0]
+
+    @property
+    def _robot(self) -> AgentModel:
+        """The first one."""
+        return self._robots[0]
 
     @property
     def built_in_overlap(self) -> BodyDistance | None:
         """The bodies that the design's build brings nearest to each other, if it brings any together."""
-        found = built_in_slack(self._tree, self._robot.agent.collisions)
+        rules = self._robot.agent.collisions if self._robots else None
+        found = built_in_slack(self._tree, rules)
         return found[1] if found is not None and found[0] < 0.0 else None
 
     def unsought(self, overlap: BodyDistance) -> DesignResult:
@@ -190,15 +195,13 @@ class _OneDesign:
 
     def _of_cases(self, values: Sequence[float], reach: Reach, cases: Cases) -> DesignResult:
         problem, solver = self._problem, self._solver
-        tree, alone = problem.space.with_actuators(self._tree, values), solver.alone
-        robot = self._driven(tree)[0] if problem.space.driven else self._robot
-        body = robot.body if alone.body is solver.robot.body else None
+        tree = problem.space.with_actuators(self._tree, values)
         return DesignResult(
             scenes=problem.scenes,
             space=problem.space,
             values=tuple(values),
             tree=tree,
-            standing=StanceModel(alone.cases, alone.body, None if body is None else (tree, body)),
+            standing=self._standing(tree) if self._robots else None,
             reach=reach,
             cases=cases,
             paper=problem.joint,
@@ -206,6 +209,13 @@ class _OneDesign:
                 (person.highest for person in solver.known.person_reaches.values()), default=None
             ),
         )
+
+    def _standing(self, tree: Tree) -> StanceModel:
+        """The robot that stands alone, with the actuators of a tree."""
+        alone, solver = self._solver.alone, self._solver
+        robot = self._driven(tree)[0] if self._problem.space.driven else self._robot
+        body = robot.body if alone.body is solver.robot.body else None
+        return StanceModel(alone.cases, alone.body, None if body is None else (tree, body))
 
     def _reach(self, values: Sequence[float]) -> Reach:
         return common_reach([reach.solve(values) for reach in self._solver.inner.reaches.values()])

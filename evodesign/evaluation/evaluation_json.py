@@ -146,8 +146,12 @@ def _shown(
         shown["residuals"] = dict(solution.residuals)
         if gap is not None:
             shown["clearance"] = distance_json(gap)
-        for person in result.scene_of(solution.case).people:
-            shown["ergonomics"] = ergonomics_json(ergonomics(person, detail.hardest.agents[person.name]))
+        found = {
+            person.name: ergonomics_json(ergonomics(person, detail.hardest.agents[person.name]))
+            for person in result.scene_of(solution.case).people
+        }
+        if found:
+            shown["ergonomics"] = found if len(found) > 1 else found.popitem()[1]
     return shown
 
 

@@ -22,7 +22,7 @@ class InnerProblems:
 
     Args:
         postures: by names of person and load.
-        reaches: by label of the load and name of the robot.
+        reaches: by label of the load and name of the robot, or of people who hold it without robots.
         lifts: by names of person and load.
     """
 
@@ -49,11 +49,11 @@ def inner_problems(
             for setting in settings
         },
         reaches={
-            (setting.scene.payload.label, robot.name): ReachProblem(
-                setting, robot.name, symmetric=symmetric, known=known, solvers=solvers
+            (setting.scene.payload.label, agent.name): ReachProblem(
+                setting, agent.name, symmetric=symmetric, known=known, solvers=solvers
             )
             for setting in settings
-            for robot in setting.scene.robots
+            for agent in setting.scene.robots or setting.scene.people
         },
         lifts={
             setting.scene.pair: LiftProblem(setting, symmetric=symmetric, timed=timed) for setting in settings

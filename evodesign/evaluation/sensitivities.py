@@ -82,7 +82,7 @@ class DesignDerivative:
         """To first order, the results of a design that differs by a step; what has no tangent is left out."""
         along = step if self.given is None else self.given @ step
         values = np.array(self.result.program_values) + along
-        tree = self.problem.space.resized(self.result.robot.tree, values.tolist())
+        tree = self.problem.space.resized(self.result.scenes[0].designed_tree, values.tolist())
         reach = replace(self.result.reach, highest=_end(self.highest, step), lowest=_end(self.lowest, step))
         cases = tuple(
             _moved(solution, derivative, step)
@@ -153,7 +153,7 @@ class Sensitivities:
     ) -> None:
         self._problem = problem
         self._inner = inner or inner_problems(problem, known)
-        self._family = problem.space.family(problem.scene.robot.tree)
+        self._family = problem.space.family(problem.scene.designed_tree)
 
     def beside(self, result: DesignResult) -> TreesBeside:
         """The robots of designs beside one, from its results."""
@@ -291,7 +291,7 @@ def _near(problem: DesignProblem, place: str, limits: Sequence[Limit]) -> Iterat
     parameters = problem.space.parameters
     ranges = np.array([p.upper - p.lower for p in parameters])
     nearest, which, where = np.inf, None, 0
-    for limit in limits:
+    for limit in limits if parameters else ():
         with np.errstate(divide="ignore"):
             shares = limit.margin / np.abs(limit.slope * ranges)
         position = int(np.argmin(shares))

@@ -53,6 +53,8 @@ class Finding:
 
 def preflight(problem: DesignProblem) -> tuple[Finding, ...]:
     """Every item in turn; what solves comes only after all others have passed."""
+    if not problem.scene.robots:
+        return (_tried("holds the load", lambda: _holds(problem)),)
     robot, space = problem.scene.robot, problem.space
     welded = WeldedTree(robot.tree)
     equipped = WeldedTree(space.resized(robot.tree, space.given(space.unscaled(robot.tree), {})))
@@ -117,13 +119,14 @@ def _refuse_exchanged(key: str, left: Vector, right: Vector) -> None:
 
 def _faces(problem: DesignProblem) -> str:
     try:
-        plan = body_plan(problem.scene.robot.tree)
+        plan = body_plan(problem.scene.designed_tree)
     except InputError:
         return "not known: no two legs of three joints"
     if plan.facing in (Facing.FORWARD, None):
         return plan.why
     tables = decode_toml(problem.source.text, problem.source.path, ProblemFile)
-    ahead = rotate(tables.designed.facing.axes, plan.facing.ahead)
+    facing = Facing.FORWARD if tables.designed is None else tables.designed.facing
+    ahead = rotate(facing.axes, plan.facing.ahead)
     remedy = next(each for each in Facing if math.dist(each.ahead, ahead) < 0.5)
     found = f"a robot that looks along {plan.facing}: {plan.why}"
     raise InputError("robot.facing", "", f'"{remedy}"', found)
@@ -203,9 +206,10 @@ def _place(tree: Tree, link: str) -> Placement:
 
 def _holds(problem: DesignProblem) -> str:
     options = replace(problem.options, compiled=False)
-    scene, robot = problem.scene, problem.scene.robot
-    frames = (*(contact.frame for contact in robot.contacts), *robot.trunk)
-    bare, free = without_frames(robot.tree, frames), [replace(each, collisions=None) for each in scene.agents]
+    scene, bare = problem.scene, problem.scene.designed_tree
+    for robot in scene.designed[:1]:
+        bare = without_frames(bare, (*(contact.frame for contact in robot.contacts), *robot.trunk))
+    free = (replace(each, collisions=None) for each in scene.agents)
     agents = (replace(each, tree=bare) if each.designed else each for each in free)
     alone = replace(
         problem,
@@ -214,7 +218,7 @@ def _holds(problem: DesignProblem) -> str:
         start_portfolio=False,
         whole_reach=True,
     )
-    unscaled = problem.space.unscaled(robot.tree)
+    unscaled = problem.space.unscaled(scene.designed_tree)
     middle = problem.holds[len(problem.holds) // 2]
     result = Evaluator(replace(alone, tasks=(middle,))).solve(unscaled)
     (case,), reach = result.cases, result.reach
@@ -232,5 +236,5 @@ def _holds(problem: DesignProblem) -> str:
         wanted = f"a posture with the load at {case.case.task}"
         raise InputError("task.heights_m", "", wanted, f"{case.status}: {case.reason}")
     out = f"; out of reach unless a design reaches farther: {beyond} m" if beyond else ""
-    apart = "" if robot.collisions is None else ", [collisions] aside"
+    apart = "" if scene.agents[0].collisions is None else ", [collisions] aside"
     return f"{found}; a posture at {case.case.task} is solved{apart}{out}"

@@ -15,6 +15,10 @@ from evodesign.mechanics.contact import Ground
 from evodesign.mechanics.disturbance import Disturbances
 from evodesign.mechanics.payload import Payload
 from evodesign.records import Case, Task
+from evodesign.tree.model import Link, Tree
+
+NO_ROBOT = Tree("no robot", (Link("no_robot"),), ())
+"""What designs change where people hold the load without robots."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +61,11 @@ class Scene:
     def designed(self) -> tuple[Agent, ...]:
         """The robots that designs change, who are all alike."""
         return tuple(agent for agent in self.agents if agent.designed)
+
+    @property
+    def designed_tree(self) -> Tree:
+        """The tree of these robots; without any a single link that weighs nothing."""
+        return self.designed[0].tree if self.designed else NO_ROBOT
 
     @property
     def human(self) -> Agent:

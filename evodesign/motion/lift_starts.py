@@ -145,7 +145,7 @@ def lift_portfolio(
     holds = PostureProblem(own, setting.symmetry, known)
     reach = ReachProblem(own, symmetric=setting.symmetric, known=known)
 
-    built = can_be_built(scene.robot, space)
+    built = can_be_built(scene, space)
 
     def held(design: Design) -> bool:
         if not built(design) or reach.solve(design).beyond(lift.heights) != 0.0:

@@ -7,7 +7,6 @@ from functools import lru_cache
 
 from evodesign.collision.zero_posture import built_in_slack
 from evodesign.design.space import DesignSpace
-from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.check import AgentModel, Checker
 from evodesign.tree.model import Tree
@@ -16,13 +15,14 @@ AT_HAND = 64
 """Designs whose check is kept: more than starts are learned from."""
 
 
-def can_be_built(robot: Agent, space: DesignSpace) -> Callable[[Sequence[float]], bool]:
+def can_be_built(scene: Scene, space: DesignSpace) -> Callable[[Sequence[float]], bool]:
     """Whether the build of a design leaves bodies apart: a function of what programs are given of it."""
-    family = space.family(robot.tree)
+    family = space.family(scene.designed_tree)
 
     def apart(design: Sequence[float]) -> bool:
-        slack = built_in_slack(family.without_actuators(design), robot.collisions)
-        return slack is None or slack[0] >= 0.0
+        tree = family.without_actuators(design)
+        found = (built_in_slack(tree, robot.collisions) for robot in scene.designed[:1])
+        return all(slack is None or slack[0] >= 0.0 for slack in found)
 
     return apart
 
@@ -41,7 +41,7 @@ class DesignCheckers:
     """
 
     def __init__(self, scene: Scene, space: DesignSpace) -> None:
-        self._scene, self._family = scene, space.family(scene.robot.tree)
+        self._scene, self._family = scene, space.family(scene.designed_tree)
         self._models = [AgentModel.of(agent, agent.tree) for agent in scene.agents]
         self._of = lru_cache(AT_HAND)(self._made)
 

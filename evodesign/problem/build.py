@@ -187,6 +187,10 @@ class DesignProblem:
             InputError: starts of the joint problem, and a density of materials or a constraint.
         """
         table = self.search
+        if not self.space.parameters:
+            raise InputError(
+                self.source.path, "design", "a robot and a parameter of it to search", "people alone"
+            )
         algorithm = table.algorithm if algorithm is None else algorithm
         if algorithm == JOINT_STARTS:
             refuse_constraints(self.constraints, self.source)
@@ -241,8 +245,8 @@ def build_problem(source: ProblemSource) -> DesignProblem:
     """
     tables = decode_toml(source.text, source.path, ProblemFile)
     robots, ground, stance = robot_agents(tables, source), ground_of(tables), stance_of(tables, source)
-    robot = robots[0]
-    refuse_unlimited(tables, source, robot)
+    for robot in robots[:1]:
+        refuse_unlimited(tables, source, robot)
     people, loads = human_agents(tables, source), payloads(tables, source)
     teams = teams_of(tables, source, robots, people)
     refuse_what_teams_lack(tables, source, teams[0])
@@ -252,17 +256,17 @@ def build_problem(source: ProblemSource) -> DesignProblem:
     scenes = tuple(Scene(team, load, ground, stance, disturbances) for team in teams for load in loads)
     check_allocations(tables, source)
     scenes = tuple(replace(scene, robot_share=robot_share(tables, source, scene)) for scene in scenes)
-    space = space_of(tables, source, robot.tree)
+    space = space_of(tables, source, scenes[0].designed_tree)
     resolved = resolved_symmetry(tables, source, scenes, space)
     scenes = with_collisions(tables, source, resolved.scenes, space)
-    robot = scenes[0].robot
+    tree = scenes[0].designed_tree
     people = tuple({id(person): person for scene in scenes for person in scene.people}.values())
     start: dict[str, Genome] = {}
     if tables.search.start is not None:
         name = tables.search.start
-        designs = read_designs(source.files[name], name, space, robot.tree)
+        designs = read_designs(source.files[name], name, space, tree)
         start = dict(zip(designs, start_genomes(designs, space, name), strict=True))
-    unscaled = unscaled_genome(space, robot.tree)
+    unscaled = unscaled_genome(space, tree)
     first = () if unscaled is None else (unscaled,)
     weights = effort_weights(tables)
     options = SolverOptions(
@@ -280,7 +284,7 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         tasks=tasks_of(tables, source),
         weights=weights,
         objectives=objectives_of(tables, source, scenes),
-        constraints=with_bodies_apart(constraints_of(tables, source, robot, people), robot),
+        constraints=with_bodies_apart(constraints_of(tables, source, robots[:1], people), scenes[0].designed),
         options=options,
         limits=worker_limits(tables),
         symmetry=resolved.symmetry,
@@ -290,6 +294,6 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         start=tuple(dict.fromkeys((*first, *start.values()))),
         joint=joint_settings(tables, source, space, weights, resolved.symmetry),
         joint_start=joint_start(tables, source, start),
-        stances=standing_cases(tables, source, robot),
+        stances=standing_cases(tables, source, scenes[0].designed),
         samples=samples_of(tables, source),
     )

@@ -51,7 +51,7 @@ def constraint_key(name: str) -> str:
 
 
 def constraints_of(
-    tables: ProblemFile, source: ProblemSource, robot: Agent, people: Sequence[Agent]
+    tables: ProblemFile, source: ProblemSource, robots: Sequence[Agent], people: Sequence[Agent]
 ) -> tuple[Constraint, ...]:
     """The constraints of a problem file, in its order.
 
@@ -65,7 +65,7 @@ def constraints_of(
         name, kind = _quantity(key, source)
         _check_bounds(table, place, source)
         refuse_unanswered_quantity(place, name, tables, source, people)
-        if name.endswith(PEAK_TORQUE):
+        for robot in robots if name.endswith(PEAK_TORQUE) else ():
             refuse_unlimited_peak(place, name, tables, source, robot)
         found.append(Constraint(name=name, unit=kind.unit, lower=table.lower, upper=table.upper))
     return tuple(found)
@@ -96,10 +96,11 @@ def _check_bounds(table: BoundsTable, place: str, source: ProblemSource) -> None
         raise InputError(source.path, f"{place}.lower", f"less than upper ({upper:g})", f"{lower:g}")
 
 
-def with_bodies_apart(constraints: Sequence[Constraint], robot: Agent) -> tuple[Constraint, ...]:
+def with_bodies_apart(constraints: Sequence[Constraint], robots: Sequence[Agent]) -> tuple[Constraint, ...]:
     """Constraints of a file, and that no design's build brings bodies together, where that may be."""
-    rules, named = robot.collisions, {constraint.name for constraint in constraints}
-    if rules is None or not rules.built_in or BODIES_APART in named:
+    named = {constraint.name for constraint in constraints}
+    built_in = any(robot.collisions is not None and robot.collisions.built_in for robot in robots)
+    if not built_in or BODIES_APART in named:
         return tuple(constraints)
     return (*constraints, Constraint(name=BODIES_APART, unit="m", lower=0.0, upper=None))
 

@@ -354,15 +354,15 @@ class ProblemFile(Table, frozen=True):
     """A whole problem file; `description` says in a sentence what it is about.
 
     A design changes the first robot, wherever it stands; others stay as their files have them. Without
-    `human` robots hold the load alone.
+    `human` robots hold the load alone, without `robot` people do, and there is no `design`.
     """
 
     name: Name
-    robot: RobotTable | Annotated[tuple[RobotTable, ...], Meta(min_length=1)]
     payload: PayloadTable | Annotated[tuple[PayloadTable, ...], Meta(min_length=1)]
     task: TaskTable
-    design: DesignTable
     objectives: ObjectivesTable
+    robot: RobotTable | Annotated[tuple[RobotTable, ...], Meta(min_length=1)] | None = None
+    design: DesignTable = DesignTable()
     human: HumanTable | Annotated[tuple[HumanTable, ...], Meta(min_length=1)] | None = None
     constraints: dict[str, BoundsTable] = msgspec.field(default_factory=dict)
     material: tuple[MaterialTable, ...] = ()
@@ -379,13 +379,13 @@ class ProblemFile(Table, frozen=True):
 
     @property
     def robots(self) -> dict[str, RobotTable]:
-        """The tables of robots by their keys, for messages."""
-        return _listed("robot", self.robot)
+        """The tables of robots by their keys, for messages; none where people hold the load without them."""
+        return {} if self.robot is None else _listed("robot", self.robot)
 
     @property
-    def designed(self) -> RobotTable:
+    def designed(self) -> RobotTable | None:
         """The table of the robot that a design changes."""
-        return next(iter(self.robots.values()))
+        return next(iter(self.robots.values()), None)
 
     @property
     def people(self) -> dict[str, HumanTable]:

@@ -90,6 +90,10 @@ def space_of(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSp
         DesignParameter(ParameterKind.ALLOCATION, t.name, (), t.lower, t.upper)
         for t in tables.design.allocation
     ]
+    if not tables.robots:
+        if parameters:
+            raise InputError(source.path, "design", "a [robot] that it changes", "people alone")
+        return DesignSpace(())
     if not parameters:
         raise InputError(source.path, "design", "a parameter, such as a length", "none")
     seen: dict[tuple[ParameterKind, str], str] = {}

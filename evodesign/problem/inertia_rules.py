@@ -37,10 +37,12 @@ class RuleDifference:
 def rule_differences(problem: DesignProblem) -> tuple[RuleDifference, ...]:
     """The links of the robot whose mass is the same, but elsewhere or otherwise spread, by the other rule."""
     tables = decode_toml(problem.source.text, problem.source.path, ProblemFile)
+    if tables.designed is None:
+        return ()
     name = tables.designed.urdf
     rules = InertiaRule.SHAPES, InertiaRule.FILE
     by_shapes, by_file = links_by_rule(problem.source.files[name], name, rules)
-    taken = problem.scene.robot.tree.link_by_name
+    taken = problem.scene.designed_tree.link_by_name
     found = (_difference(*pair, taken[pair[0].name]) for pair in zip(by_shapes, by_file, strict=True))
     return tuple(each for each in found if each is not None)
 

@@ -26,7 +26,7 @@ from evodesign.tree.resize import growth_of
 
 def model_json(problem: DesignProblem) -> dict[str, Any]:
     """What was understood, as a JSON object."""
-    scene = problem.scene
+    scene, tree = problem.scene, problem.scene.designed_tree
     loads = {each.payload.label: each.payload for each in problem.scenes}
     told = [_load(load) for load in loads.values()]
     disturbed = scene.disturbances
@@ -40,8 +40,10 @@ def model_json(problem: DesignProblem) -> dict[str, Any]:
         **({"disturbances": [_disturbance(d) for d in disturbed.cases]} if disturbed else {}),
         "objectives": [f"{objective.sense} {objective.name}" for objective in problem.objectives],
         **({"constraints": [*map(msgspec.to_builtins, problem.constraints)]} if problem.constraints else {}),
-        "links": [_link(link, scene.robot.tree, grows=True) for link in scene.robot.tree.links],
-        "parameters": [_parameter(parameter, scene.robot.tree) for parameter in problem.space.parameters],
+        "links": [
+            _link(link, robot.tree, grows=True) for robot in scene.designed[:1] for link in robot.tree.links
+        ],
+        "parameters": [_parameter(parameter, tree) for parameter in problem.space.parameters],
         **_collisions(problem),
         **_materials(problem),
     }

@@ -21,15 +21,25 @@ from evodesign.problem.unknown_names import refuse_unknown
 from evodesign.records import ProblemSource
 
 
-def standing_cases(tables: ProblemFile, source: ProblemSource, robot: Agent) -> tuple[StanceCase, ...]:
-    """The postures in which the robot stands alone.
+def standing_cases(
+    tables: ProblemFile, source: ProblemSource, robots: Sequence[Agent]
+) -> tuple[StanceCase, ...]:
+    """The postures in which a robot stands alone.
 
+    Args:
+        tables: the problem file.
+        source: the problem, for messages.
+        robots: those that designs change, who are all alike.
     Raises:
         InputError: a name twice, a joint that neither moves nor is driven or is beyond its limits, other than
             one group of joints to balance on both feet and two on one, a height without joints that raise
             the hand, or joints without a height.
     """
-    driven = driven_joints(tables)
+    if not robots:
+        if tables.load_case:
+            raise InputError(source.path, "load_case", "a [robot] that stands so", "people alone")
+        return ()
+    robot, driven = robots[0], driven_joints(tables)
     joints = [name for name in robot.tree.actuated if name in driven or name in robot.joints]
     found: list[StanceCase] = []
     for position, table in enumerate(tables.load_case):

@@ -64,8 +64,8 @@ def resolved_symmetry(
     symmetric = Symmetry.POLISH if asked == Symmetry.POLISH else Symmetry.ON
     try:
         mean, notes = _averaged_scenes(scenes)
-        space.check(mean[0].robot.tree)
-        space.check_mirror(mean[0].robot.tree)
+        space.check(mean[0].designed_tree)
+        space.check_mirror(mean[0].designed_tree)
         for scene in mean:
             symmetric_forms(scene)
     except InputError as error:

@@ -36,6 +36,8 @@ def teams_of(
         if person.side.quarters in taken:
             found = f"'{person.side}', where {taken[person.side.quarters]} stands"
             raise InputError(source.path, f"{key}.side", "a side without a robot", found)
+    if not robots and not people:
+        raise InputError(source.path, "robot", "a [robot] or a [human] who holds the load", "neither")
     names = dict.fromkeys(person.name for person in people)
     sides = [[person for person in people if person.name == name] for name in names]
     return tuple((*robots, *chosen) for chosen in product(*sides))
@@ -54,6 +56,8 @@ def refuse_what_teams_lack(tables: ProblemFile, source: ProblemSource, team: Seq
     robots = sum(len(table.sides) for table in tables.robots.values())
     people = len(team) - robots
     found = f"{_counted(robots, 'robot', 'robots')} and {_counted(people, 'person', 'people')}"
+    for key in () if robots else _needing_robots(tables):
+        raise InputError(source.path, key, "a [robot] with it", found)
     if not people:
         for key in _needing_people(tables):
             alone = "a robot that holds the load alone" if robots == 1 else found
@@ -72,6 +76,13 @@ def refuse_what_teams_lack(tables: ProblemFile, source: ProblemSource, team: Seq
 
 def _counted(number: int, one: str, several: str) -> str:
     return f"{number or 'no'} {one if number == 1 else several}"
+
+
+def _needing_robots(tables: ProblemFile) -> Iterator[str]:
+    if tables.task.robot_share is not None:
+        yield "task.robot_share"
+    if tables.task.lift:
+        yield "task.lift"
 
 
 def _needing_people(tables: ProblemFile) -> Iterator[str]:

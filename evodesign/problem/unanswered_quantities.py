@@ -13,7 +13,7 @@ from evodesign.mechanics.lumbar_load import has_lumbar_disc
 from evodesign.problem.file import ProblemFile
 from evodesign.quantities.hardware_quantities import COST, NEED_ACTUATORS, NEED_WALLS, OF_BEAMS
 from evodesign.quantities.motion_quantities import NEED_LIFTS, OF_HOLDS, SPINE
-from evodesign.quantities.objectives import NEED_PEOPLE, NEED_STRENGTHS
+from evodesign.quantities.objectives import NEED_PEOPLE, NEED_ROBOTS, NEED_STRENGTHS, split_name
 from evodesign.quantities.person_quantities import BACK
 from evodesign.records import ProblemSource
 
@@ -21,7 +21,7 @@ from evodesign.records import ProblemSource
 def refuse_unanswered_quantity(
     key: str, name: str, tables: ProblemFile, source: ProblemSource, people: Sequence[Agent]
 ) -> None:
-    """Refuse a quantity that needs people, actuators, walls, lifts, spines or strengths where there are none.
+    """Refuse a quantity that needs robots, people, strengths, actuators, walls or lifts that are not there.
 
     Args:
         key: where the problem file names it.
@@ -34,6 +34,8 @@ def refuse_unanswered_quantity(
     """
     _refuse_without_hardware(key, name, tables, source)
     _refuse_still(key, name, tables, source)
+    if split_name(name)[1] in NEED_ROBOTS and not tables.robots:
+        raise InputError(source.path, key, f"a [robot] for '{name}'", "people alone")
     if name.endswith(NEED_PEOPLE) and not people:
         raise InputError(source.path, key, f"a [human] for '{name}'", "a robot alone")
     for person in people:

@@ -257,6 +257,15 @@ NEED_PEOPLE = (
 )
 """How the names of quantities end that are of people, or of robot and people together."""
 
+NEED_ROBOTS = frozenset(
+    {
+        *("robot_torque", "peak_torque", "holding_power", "hand_deflection", POWER, ENERGY),
+        *("mass", "com_height", "actuator_mass", "cost", "torque_margin", "least_safety_factor"),
+        *(BODIES_APART, "paper_cost", "paper2023_cost"),
+    }
+)
+"""Quantities that are of robots."""
+
 NEED_STRENGTHS = (HUMAN_EFFORT, ENDURANCE)
 """How the names of quantities end that need people of known strength."""
 

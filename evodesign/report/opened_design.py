@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 from evodesign.analysis.front import front
 from evodesign.analysis.people_spread import PeopleSpread, spread_of_run
 from evodesign.errors import EvodesignError, InputError, RunError, on_one_line
-from evodesign.mechanics.agent import HUMAN
 from evodesign.records import Case, CaseDetail, Detail, Evaluation, RunHeader
 from evodesign.report.scene_models import SceneSet
 from evodesign.runlog.run import RunLog
@@ -48,17 +47,21 @@ class RebuiltProblem:
             return False
 
     @cached_property
-    def people(self) -> Mapping[str, Agent]:
-        """Its people by what they are called; where none is a URDF, faster than the whole problem."""
+    def people(self) -> Mapping[str, tuple[Agent, ...]]:
+        """Who holds a load together, by what a case calls them.
+
+        Where nobody is a URDF and all take turns, faster than the whole problem.
+        """
         from evodesign.problem.agents import everyone, human_agents  # CasADi takes its time to load
         from evodesign.problem.file import ProblemFile
         from evodesign.problem.source import decode_toml
 
         source = self._header.problem
         tables = decode_toml(source.text, source.path, ProblemFile)
-        if any(table.urdf is not None for _, table in everyone(tables, source)):  # may be averaged
-            return {person.label: person for scene in self.problem.scenes for person in scene.people}
-        return {person.label: person for person in human_agents(tables, source)}
+        given = [table for _, table in everyone(tables, source)]
+        if any(table.urdf is not None for table in given) or len({table.side for table in given}) > 1:
+            return {scene.pair[0]: scene.people for scene in self.problem.scenes if scene.people}
+        return {person.label: (person,) for person in human_agents(tables, source)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +89,7 @@ class OpenedDesign:
         design = assessment.design  # what a start of the joint problem led to, not its genome
         space = problem.space
         values = space.given([design[each.name] for each in space.parameters], assessment.rated_torques)
-        return SceneSet.of(problem.scenes, problem.space.resized(problem.scene.robot.tree, values))
+        return SceneSet.of(problem.scenes, problem.space.resized(problem.scene.designed_tree, values))
 
     def spread(self) -> PeopleSpread | None:
         """Of the run's designs over samples of people; None where this one has none."""
@@ -110,6 +113,8 @@ class OpenedDesign:
     def ergonomics(self) -> tuple[Ergonomics, ...]:
         """What the design's postures ask of the people, one for each case: in a lift at the hardest moment.
 
+        Of several people who hold the load together it is that of the one whose back bears most.
+
         Raises:
             InputError: the people cannot be told from the header's problem.
             RunError: it has not the person of a case.
@@ -128,9 +133,15 @@ class OpenedDesign:
                 f"{self.run.directory}: its problem has no person '{name}', of whom it has postures"
             )
         hardest = [detail.hardest for detail in self.cases]
-        if any(HUMAN not in moment.agents for moment in hardest):
+        if any(person.name not in each.agents for each in hardest for person in people[each.case.person]):
             raise RunError(f"{self.run.directory}: its problem has people, and a posture is of nobody")
-        return tuple(ergonomics(people[each.case.person], each.agents[HUMAN]) for each in hardest)
+        return tuple(
+            max(
+                (ergonomics(person, each.agents[person.name]) for person in people[each.case.person]),
+                key=lambda one: 0.0 if one.back is None else one.back.compression,
+            )
+            for each in hardest
+        )
 
 
 def open_design(run: RunLog, number: int, jobs: int, progress: PrecomputeProgress) -> OpenedDesign:

@@ -55,7 +55,7 @@ def sequel_reproduction(experiment: Experiment) -> SequelReproduction:
         found = ", ".join(objective.name for objective in problem.objectives)
         raise InputError(problem.source.path, "objectives", f"{COST} and {ROBOT_TORQUE}", found)
     strict = stricter_problem(problem, [*STRICTER.values()][-1])
-    space, base = problem.space, problem.scene.robot.tree
+    space, base = problem.space, problem.scene.designed_tree
     designs = dict(read_designs(read_text(ROBOTS, str(ROBOTS), ""), str(ROBOTS), space, base))
     experiment.display.note("the robots of the sequel")
     with experiment.display.precompute() as progress:

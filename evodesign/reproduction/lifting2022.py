@@ -79,7 +79,7 @@ def reproduction(experiment: Experiment, without: DesignProblem, starts: int) ->
             reduction_claim(name, *torque_norms, least, len(every)),
             human_claim(name, *torque_norms),
         ]
-    space, tree = experiment.problem.space, experiment.problem.scene.robot.tree
+    space, tree = experiment.problem.space, experiment.problem.scene.designed_tree
     robots = {ORIGINAL: space.unscaled(tree)} | {
         one.robot.name: tuple(one.design.values()) for one in runs if one.design
     }
@@ -116,7 +116,7 @@ def _original(experiment: Experiment) -> tuple[ReproducedRobot, float | None]:
     problem = experiment.problem
     with experiment.display.precompute() as progress:
         evaluator = evaluator_of(problem, experiment.effort.jobs, progress)
-    result = evaluator.solve(problem.space.unscaled(problem.scene.robot.tree))
+    result = evaluator.solve(problem.space.unscaled(problem.scene.designed_tree))
     cases = tuple(detail_of(case) for case in result.cases if case.solved)
     models = SceneModels.of(problem.scene, result.tree)
     return ReproducedRobot(ORIGINAL, "the robot as it is", models, cases), result.reach.highest
@@ -141,10 +141,12 @@ def _best(problem: DesignProblem, run: RunLog, name: str, title: str) -> Found:
     scene = problem.scene
     best = front(run.header.objectives, run.evaluations)
     if not best:
-        return Found(ReproducedRobot(name, title, SceneModels.of(scene, scene.robot.tree), ()), run, None, {})
+        return Found(
+            ReproducedRobot(name, title, SceneModels.of(scene, scene.designed_tree), ()), run, None, {}
+        )
     design = best[0].assessment.design
     details = {detail.evaluation: detail.cases for detail in run.details}
-    models = SceneModels.of(scene, problem.space.resized(scene.robot.tree, list(design.values())))
+    models = SceneModels.of(scene, problem.space.resized(scene.designed_tree, list(design.values())))
     robot = ReproducedRobot(name, title, models, details[best[0].number])
     (objective,) = run.header.objectives
     return Found(robot, run, best[0].assessment.objectives[objective.name], design)
@@ -159,7 +161,7 @@ def _robot_norm(evaluation: Evaluation, height: float) -> float:
 
 def _published(problem: DesignProblem) -> Published:
     """The setting without limits: the unscaled robot at the heights of the paper, and the optimised one."""
-    unscaled = problem.space.genome(problem.space.unscaled(problem.scene.robot.tree))
+    unscaled = problem.space.genome(problem.space.unscaled(problem.scene.designed_tree))
     held = held_at(problem, unscaled, [task for task in problem.holds if task.height_m in PAPER_ORIGINAL])
     baseline = Baseline(problem)
     search = make_search(problem.settings(JOINT_STARTS, PUBLISHED_STARTS, problem.search.seed))
@@ -180,6 +182,6 @@ def _published(problem: DesignProblem) -> Published:
 
 
 def _robot(problem: DesignProblem, name: str, title: str, solution: JointSolution) -> ReproducedRobot:
-    tree = problem.space.resized(problem.scene.robot.tree, solution.design)
+    tree = problem.space.resized(problem.scene.designed_tree, solution.design)
     cases = tuple(detail_of(case) for case in solution.cases if case.solved)
     return ReproducedRobot(name, title, SceneModels.of(problem.scene, tree), cases)

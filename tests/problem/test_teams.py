@@ -23,14 +23,17 @@ from evodesign.evaluation.factory import cached_precomputed
 from evodesign.evaluation.gradients import assessed_gradients
 from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.evaluation.simulations import simulated_holds
+from evodesign.guess.preflight import preflight
 from evodesign.mechanics.agent import Agent, Role
 from evodesign.pool.joblib_pool import JoblibPool
+from evodesign.posture.formulations.reach import person_reach
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.model_json import model_json
 from evodesign.problem.shipped import SHIPPED
 from evodesign.problem.source import read_source, source_of
 from evodesign.quantities.design_result import DesignResult
 from evodesign.quantities.objectives import objective_value
+from evodesign.quantities.person_quantities import compression
 from evodesign.report.figures.design import write_design_figures
 from evodesign.report.page.bodies import bodies
 from evodesign.report.replay.layout import layout_text
@@ -375,3 +378,90 @@ def test_wheels_and_feet_exclude_each_other(other: str) -> None:
     with pytest.raises(InputError, match="wanted either this key or base, found both") as error:
         build_problem(source_of(tables))
     assert error.value.key == f"robot.{other}"
+
+
+@pytest.fixture(scope="module")
+def two_people() -> DesignProblem:
+    return built(shipped("two_people", task={"heights_m": [0.8, 1.0]}))
+
+
+def test_two_people_hold_a_load_without_a_robot(two_people: DesignProblem) -> None:
+    """Hands and weight balance in the world; a quantity is that of both, or of the one who bears most."""
+    scene = two_people.scene
+    assert [(agent.name, agent.role) for agent in scene.agents] == [
+        ("human", Role.PERSON),
+        ("human_2", Role.PERSON),
+    ]
+    assert two_people.space.parameters == ()
+    evaluator = Evaluator(two_people)
+    result = evaluator.solve(())
+    assert all(solution.solved for solution in result.cases), [each.reason for each in result.cases]
+    norms, backs = [], []
+    for solution in result.cases:
+        center = np.array([0.0, 0.0, solution.case.task.heights[0]])
+        force, moment = np.array([0.0, 0.0, -G * scene.payload.mass]), np.zeros(3)
+        for agent in scene.agents:
+            posture, turn = solution.postures[agent.name], world_of(agent)
+            links = placed(agent, agent.tree, posture)
+            for hand in agent.hands:
+                own = -turn @ posture.wrenches[hand.name][:3]
+                force += own
+                moment += np.cross(links[hand.frame].translation - center, own)
+                moment -= turn @ posture.wrenches[hand.name][3:]
+        assert force == pytest.approx(0.0, abs=1e-4)
+        assert moment == pytest.approx(0.0, abs=1e-4)
+        norms.append(math.hypot(*(each.torque_norm for each in solution.postures.values())))
+        people = [(agent, solution.postures[agent.name]) for agent in scene.agents]
+        backs.append(max(compression(*each) for each in people))
+    assert objective_value("human_torque", result) == pytest.approx(np.mean(norms), rel=1e-12)
+    assert objective_value("back_compression", result) == pytest.approx(np.mean(backs), rel=1e-12)
+    assessment, details = evaluator.assessment((), result), evaluator.details(result)
+    told = evaluation_json(two_people, (), result, assessment, {}, details)
+    assert told["cases"][0]["ergonomics"].keys() == {"human", "human_2"}
+    assert model_json(two_people)["links"] == []
+    (finding,) = preflight(two_people)
+    assert finding.fault == ""
+
+
+def test_a_person_alone_reaches_as_far_as_beside_a_robot() -> None:
+    """The reach that is found of a person beside a robot, by another route."""
+    problem = built(shipped("person_alone", task={"heights_m": [1.0]}))
+    found = Evaluator(replace(problem, whole_reach=True)).solve(()).reach
+    alone = person_reach(problem.scene, "human", problem.options, symmetric=True)
+    assert alone is not None
+    assert found.highest == pytest.approx(alone.highest, abs=1e-4)
+    assert found.lowest == pytest.approx(alone.lowest, abs=1e-4)
+
+
+def test_people_alone_are_not_searched(two_people: DesignProblem) -> None:
+    with pytest.raises(InputError, match="a parameter of it to search, found people alone"):
+        two_people.settings()
+
+
+@pytest.mark.parametrize(
+    ("change", "key", "wanted"),
+    [
+        ({"objectives": {"minimise": ["robot_torque"]}}, "objectives.minimise[0]", "a [robot] for"),
+        ({"constraints": {"mass_kg": {"upper": 60.0}}}, "constraints.mass_kg", "a [robot] for 'mass'"),
+        (
+            {"design": {"length": [{"name": "a", "links": ["b"], "lower": 0.5, "upper": 2.0}]}},
+            "design",
+            "a [robot] that it changes",
+        ),
+        ({"task": {"heights_m": [1.0], "robot_share": 0.5}}, "task.robot_share", "a [robot] with it"),
+        ({"human": ()}, "human", ""),
+    ],
+)
+def test_what_needs_a_robot_is_refused_of_people(change: dict[str, Any], key: str, wanted: str) -> None:
+    with pytest.raises(InputError) as error:
+        build_problem(source_of(shipped("two_people", **change)))
+    assert error.value.key == key
+    assert wanted in error.value.wanted
+
+
+def test_somebody_must_hold_the_load() -> None:
+    tables = shipped("two_people")
+    tables.pop("human")
+    with pytest.raises(InputError, match=r"wanted a \[robot\] or a \[human\] who holds the load") as error:
+        build_problem(source_of(tables))
+    assert error.value.key == "robot"

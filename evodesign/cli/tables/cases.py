@@ -10,11 +10,7 @@ from evodesign.cli.output import markup, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.errors import on_one_line
 from evodesign.mechanics.agent import HUMAN, ROBOT
-from evodesign.records import Assessment, CaseOutcome, Lift
-
-ALONE = ("height [m]", "robot |tau| [N m]", "human |tau| [N m]", "iterations", "residual")
-MOVING = ("load",)
-SEVERAL = ("height", "robot |tau|", "human |tau|", "residual")
+from evodesign.records import Assessment, CaseOutcome, Lift, Status
 
 
 def cases_table(assessment: Assessment, title: str) -> FittedTable:
@@ -28,22 +24,28 @@ def cases_table(assessment: Assessment, title: str) -> FittedTable:
     """
     outcomes = assessment.cases
     labels, moves = _name_columns(outcomes), any(isinstance(each.case.task, Lift) for each in outcomes)
-    alone = (*MOVING, *ALONE[1:]) if moves else ALONE
-    columns = [*names(*labels), *numbers(*(SEVERAL if labels else alone)), *names("status")]
+    roles, unit = _roles(outcomes), "" if labels else " [N m]"
+    height = "height" if labels else "load" if moves else "height [m]"
+    found = (
+        height,
+        *(f"{role} |tau|{unit}" for role in roles),
+        *(() if labels else ("iterations",)),
+        "residual",
+    )
+    columns = [*names(*labels), *numbers(*found), *names("status")]
     table = titled(title, columns, keys=len(labels) + 1)
     for outcome, following in zip(outcomes, (*outcomes[1:], None), strict=False):
         iterations = [] if labels else [str(outcome.iterations)]
         table.add_row(
             *(markup(name_of(outcome)) for name_of in labels.values()),
             _height(outcome) if labels or moves else rounded(outcome.case.task.heights[0]),
-            rounded(outcome.robot_torque_norm),
-            rounded(outcome.human_torque_norm),
+            *(rounded(_undisturbed(outcome, role)) for role in roles),
             *iterations,
             _residual(outcome),
             _status(outcome),
         )
         for name, norms in outcome.disturbed.items():
-            own = [rounded(norms.get(agent)) for agent in (ROBOT, HUMAN)]
+            own = [rounded(norms.get(role)) for role in roles]
             blank = ["" for _ in iterations]
             table.add_row(*("" for _ in labels), "", *own, *blank, "", markup(f"under '{name}'"))
         if following is not None and outcome.case.pair != following.case.pair:
@@ -65,36 +67,51 @@ def summary_table(assessment: Assessment, title: str) -> FittedTable:
 
     Torques under disturbances count as the objectives count them, each beside the undisturbed one.
     """
-    measured = numbers("solved", "robot mean", "worst", "human mean", "worst")
-    table = titled(title, [*names("cases"), *measured])
     outcomes = assessment.cases
-    _add_summary(table, "all", outcomes, last=True)
+    measured = (column for role in _roles(outcomes) for column in (f"{role} mean", "worst"))
+    table = titled(title, [*names("cases"), *numbers("solved", *measured)])
+    roles = _roles(outcomes)
+    _add_summary(table, "all", outcomes, roles, last=True)
     groups = [*_name_columns(outcomes).values(), _height]
     for name_of in groups:
         found = [*dict.fromkeys(name_of(outcome) for outcome in outcomes)]
         for name in found:
             same = [outcome for outcome in outcomes if name_of(outcome) == name]
-            _add_summary(table, name, same, last=name == found[-1])
+            _add_summary(table, name, same, roles, last=name == found[-1])
     return table
 
 
-def _add_summary(table: FittedTable, name: str, outcomes: Sequence[CaseOutcome], *, last: bool) -> None:
-    solved = [outcome for outcome in outcomes if outcome.robot_torque_norm is not None]
+def _add_summary(
+    table: FittedTable, name: str, outcomes: Sequence[CaseOutcome], roles: Sequence[str], *, last: bool
+) -> None:
+    solved = [outcome for outcome in outcomes if outcome.status is Status.SOLVED]
     measured = [
         number
-        for agent in (ROBOT, HUMAN)
-        for number in _mean_and_worst([norm for outcome in solved for norm in _norms(outcome, agent)])
+        for role in roles
+        for number in _mean_and_worst([norm for outcome in solved for norm in _norms(outcome, role)])
     ]
     share = f"{len(solved)} of {len(outcomes)}"
     table.add_row(markup(name), share, *map(rounded, measured), end_section=last)
 
 
-def _norms(outcome: CaseOutcome, agent: str) -> Iterator[float]:
-    """An agent's torque norms in a case, undisturbed and disturbed."""
-    undisturbed = outcome.robot_torque_norm if agent == ROBOT else outcome.human_torque_norm
+def _roles(outcomes: Sequence[CaseOutcome]) -> list[str]:
+    """Whose torques there are; both where there are none."""
+    known = [
+        role for role in (ROBOT, HUMAN) if any(_undisturbed(each, role) is not None for each in outcomes)
+    ]
+    return known or [ROBOT, HUMAN]
+
+
+def _undisturbed(outcome: CaseOutcome, role: str) -> float | None:
+    return outcome.robot_torque_norm if role == ROBOT else outcome.human_torque_norm
+
+
+def _norms(outcome: CaseOutcome, role: str) -> Iterator[float]:
+    """Torque norms of those of a role in a case, undisturbed and disturbed."""
+    undisturbed = _undisturbed(outcome, role)
     if undisturbed is not None:
         yield undisturbed
-    yield from (norms[agent] for norms in outcome.disturbed.values() if agent in norms)
+    yield from (norms[role] for norms in outcome.disturbed.values() if role in norms)
 
 
 def _mean_and_worst(norms: Sequence[float]) -> Iterator[float | None]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
+import msgspec
 from rich.markup import escape
 
 from evodesign.cli.output import heading, interval, rounded
@@ -82,7 +83,10 @@ def _people_tables(result: DesignResult) -> tuple[FittedTable, FittedTable]:
     """What the solved postures of a design ask of the people."""
     solved = [solution for solution in result.cases if solution.solved]
     asked = [
-        (one.case, ergonomics(person, detail_of(one).hardest.agents[person.name]))
+        (
+            msgspec.structs.replace(one.case, person=person.label),
+            ergonomics(person, detail_of(one).hardest.agents[person.name]),
+        )
         for one in solved
         for person in result.scene_of(one.case).people
     ]

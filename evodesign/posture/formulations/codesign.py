@@ -171,7 +171,7 @@ class JointProblem:
         return JointSolution(design, cases, ((),) * len(cases), attempt)
 
     def _checked(self, name: str, design: tuple[float, ...], raw: RawSolution) -> JointSolution:
-        tree = self._space.resized(self._scene.robot.tree, design)
+        tree = self._space.resized(self._scene.designed_tree, design)
         checker = Checker(
             shared_scene(self._scene, self._space, design),
             AgentModel.of(self._scene.robot, tree),
@@ -260,7 +260,7 @@ def _program(
     given_scene = scene
     values = _values(space, ca.vertsplit(design.value))
     scene = shared_scene(scene, space, values)
-    tree = space.resized(scene.robot.tree, values)
+    tree = space.resized(scene.designed_tree, values)
     cost = settings.tasks.of_design(space, values, scene.robot, tree)
     case = CaseSymbols(scene, tuple(task.height_m for task in tasks))
     assembly = assemble(

@@ -23,7 +23,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from evodesign.mechanics.agent import ROBOT
+from evodesign.mechanics.agent import ROBOT, Role
 from evodesign.mechanics.scene import Scene
 from evodesign.nlp.method import SolverOptions
 from evodesign.nlp.optimality import NotDifferentiable
@@ -63,7 +63,7 @@ FIXED_HEIGHTS = (1.0, 0.6)
 """Where the load is in the starts that know nothing better [m]."""
 
 FIXED: tuple[Start, ...] = tuple({HEIGHT: [height]} for height in FIXED_HEIGHTS)
-"""Starts where there is no portfolio; the best result counts."""
+"""Starts of a robot where there is no portfolio."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,9 +137,10 @@ class ReachProblem:
         self.form = forms_of(scene, symmetric=symmetric)[scene.agents.index(scene.agent(name))]
         self._setting, self._solvers = setting, solvers or SolverCache()
         agent = self.form.agent
-        self._starts = {
-            sense: tuple(_in_place(start, agent.name) for start in own.starts if agent.designed)
+        self._starts = dict.fromkeys((HIGHEST, LOWEST), ()) | {
+            sense: tuple(_in_place(start, scene.agents[0].name, agent.name) for start in own.starts)
             for sense, own in ((HIGHEST, known.highest), (LOWEST, known.lowest))
+            if agent.tree is scene.agents[0].tree
         }
         self._latest: dict[float, tuple[tuple[float, ...], list[RawSolution]]] = {}
 
@@ -151,6 +152,13 @@ class ReachProblem:
     @cached_property
     def _seeker(self) -> Seeker:
         return Seeker(self._solver)
+
+    @cached_property
+    def _fixed(self) -> tuple[Start, ...]:
+        """Starts where there is no portfolio; the best result counts."""
+        if self.form.agent.role is Role.ROBOT:
+            return FIXED
+        return tuple({**start, **height} for height in FIXED for start in person_starts(self.program))
 
     @cached_property
     def _sensitivity(self) -> SolutionSensitivity:
@@ -175,7 +183,7 @@ class ReachProblem:
         return Landscape(
             self._seeker,
             self._beside(sense),
-            FIXED,
+            self._fixed,
             0.0,
             BUDGET.near_height,
             universal=universal,
@@ -196,17 +204,16 @@ class ReachProblem:
 
     def solves(self, design: Sequence[float], sense: float) -> list[RawSolution]:
         """The result of every start in one sense; that of the latest design is at hand."""
-        of, known = self._latest.get(sense, ((), []))
-        if of != tuple(design):
-            known = self._solves(design, sense)
-            self._latest[sense] = tuple(design), known
-        return known
+        latest = self._latest.get(sense)
+        if latest is None or latest[0] != tuple(design):
+            latest = self._latest[sense] = tuple(design), self._solves(design, sense)
+        return latest[1]
 
     def _solves(self, design: Sequence[float], sense: float) -> list[RawSolution]:
         """From the portfolio, or fixed starts; a load as low as is asked for is held where the highest is."""
-        starts = [filled(start, self.program) for start in self._starts[sense] or FIXED]
+        starts = [filled(start, self.program) for start in self._starts[sense] or self._fixed]
         parameters = {"design": design, **self._beside(sense)}
-        seeker, ways = self._seeker, [starts, [*FIXED]] if self._starts[sense] else [starts]
+        seeker, ways = self._seeker, [starts, [*self._fixed]] if self._starts[sense] else [starts]
         height, highest = self.extreme(design, HIGHEST) if sense == LOWEST else (None, None)
         if highest is not None and height is not None:
             ways.append([highest.values])
@@ -291,19 +298,23 @@ class ReachProblem:
 
 
 def _with_own_rows(setting: Setting, name: str) -> Setting:
-    """The setting with the rows that keep bodies of a robot apart which meet at extreme heights."""
-    robot = setting.scene.agent(name)
-    if robot.collisions is None:
-        return setting
-    robot = replace(robot, collisions=robot.collisions.at_reach)
-    return replace(setting, scene=setting.scene.with_agents(robot))
+    """The setting with the rows that keep bodies of a robot apart which meet at extreme heights.
+
+    A person's own bodies may pass through each other here, and no measured posture draws the person.
+    """
+    agent = setting.scene.agent(name)
+    if agent.role is Role.PERSON:
+        agent = replace(agent, collisions=None, measured=None)
+    elif agent.collisions is not None:
+        agent = replace(agent, collisions=agent.collisions.at_reach)
+    return replace(setting, scene=setting.scene.with_agents(agent))
 
 
-def _in_place(start: Start, name: str) -> Start:
-    """A start of the first robot for one like it, each in the other's place."""
-    if name == ROBOT:
+def _in_place(start: Start, first: str, name: str) -> Start:
+    """A start of the first agent for one like it, each in the other's place."""
+    if name == first:
         return start
-    renamed = {ROBOT: name, name: ROBOT}
+    renamed = {first: name, name: first}
     parts = {key: key.partition(".") for key in start}
     return {f"{renamed.get(who, who)}{dot}{what}": start[key] for key, (who, dot, what) in parts.items()}
 

@@ -73,9 +73,11 @@ def found_meetings(
     """
     finder = _Finder(setting, symmetric, part, parts)
     scene = finder.scene
-    met = finder.held(tasks) | (finder.at_extremes() if extreme else set())
+    met = finder.held(tasks) | (finder.at_extremes() if extreme and scene.robots else set())
     forms = {form.agent.name: form for form in finder.forms}
-    agents = {REACH: scene.robot, **{agent.name: agent for agent in scene.agents}}
+    agents = {agent.name: agent for agent in scene.agents}
+    if scene.robots:
+        agents = {REACH: scene.robot, **agents}
     return {
         name: _in_order(agent, {pair for of, pair in met if of == name}, forms[agent.name])
         for name, agent in agents.items()
@@ -97,7 +99,7 @@ class _Finder:
         self._setting, self._symmetric = replace(setting, scene=free, options=options), symmetric
         self._models = [AgentModel.of(agent, agent.tree) for agent in scene.agents]
         space = setting.space
-        built = can_be_built(scene.robot, space)
+        built = can_be_built(scene, space)
 
         def own(of: Callable[[float], float]) -> list[_Values]:
             def given(point: tuple[float, ...]) -> _Values:
@@ -116,7 +118,7 @@ class _Finder:
         models = [AgentModel.of(agent, agent.tree) for agent in scene.agents]
         found: set[_Met] = set()
         for values in self._designs:
-            checker = Checker(scene, *with_hardware(models, space.resized(scene.robot.tree, values)))
+            checker = Checker(scene, *with_hardware(models, space.resized(scene.designed_tree, values)))
             for task in tasks:
                 best = problem.solve(values, task, (), checker).best
                 for instant, height in zip(best.instants if best else (), task.heights, strict=False):
@@ -137,7 +139,7 @@ class _Finder:
 
     def _near(self, values: tuple[float, ...], postures: Mapping[str, AgentPosture], height: float) -> _Near:
         """The pairs that are near, with their distances [m]."""
-        models = with_hardware(self._models, self._setting.space.resized(self.scene.robot.tree, values))
+        models = with_hardware(self._models, self._setting.space.resized(self.scene.designed_tree, values))
         gaps = near_bodies(models, postures, self.scene.payload.size, height, NEAR)
         return {met: gap.distance for gap in gaps for met in own_pairs(gap)}
 

@@ -114,9 +114,9 @@ def _with_found(known: Precomputed, piece: Piece, found: Mapping[str, Sequence[B
 
 def _designs(setting: PrecomputeSetting, scene: Scene, solvers: SolverCache) -> list[HeldLoads]:
     """Quasi-random designs that can be built and hold the load somewhere; enough of them at each height."""
-    space, built = setting.space, can_be_built(scene.robot, setting.space)
+    space, built = setting.space, can_be_built(scene, setting.space)
     own = setting.of(scene, BUDGET.briefly(setting.options))
-    reach = ReachProblem(own, symmetric=setting.symmetric, solvers=solvers)
+    reach = ReachProblem(own, scene.agents[0].name, symmetric=setting.symmetric, solvers=solvers)
     every = spread_designs(
         len(space.parameters),
         lambda genome: space.given(space.values(genome), {}),
@@ -142,9 +142,9 @@ def _portfolio(
     own, designs = setting.of(scene, BUDGET.briefly(setting.options)), known.designs_for(task)
     if task is None:
         sense = HIGHEST if piece.subject is Subject.HIGHEST else LOWEST
-        reach = ReachProblem(own, symmetric=setting.symmetric, solvers=solvers)
+        reach = ReachProblem(own, scene.agents[0].name, symmetric=setting.symmetric, solvers=solvers)
         return start_portfolio(reach.landscape(sense), designs)
-    checker_of = None if scene.robot.collisions is None else DesignCheckers(scene, setting.space).of
+    checker_of = None if scene.agents[0].collisions is None else DesignCheckers(scene, setting.space).of
     problem = PostureProblem(own, setting.symmetry, known, solvers)
     landscape = problem.landscape(task, checker_of)
     near = known.starts(piece.pair, piece.after) if piece.after else ()

@@ -104,7 +104,7 @@ def stages(
         person_reaches: whether the people's own reach is asked for.
         lifts: of the problem.
     """
-    parting = [scene for scene in setting.scenes if scene.robot.collisions is not None]
+    parting = [scene for scene in setting.scenes if scene.agents[0].collisions is not None]
     meetings = [Piece(Subject.MEETINGS, scene.pair) for scene in parting]
     people = [Piece(Subject.PERSON_REACH, scene.pair) for scene in setting.scenes if person_reaches]
     if not portfolios:

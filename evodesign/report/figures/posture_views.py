@@ -13,6 +13,7 @@ from dataclasses import replace
 from matplotlib.figure import Figure
 
 from evodesign.body.placement import Placement, rotate
+from evodesign.mechanics.agent import Role
 from evodesign.report.figures.posture_figure import Camera, posture_figure
 from evodesign.report.scene_models import ContactWrench, PlacedScene
 
@@ -28,7 +29,9 @@ FRONT = Camera(azimuth=0.0, elevation=0.0)
 
 def side_figure(stages: Sequence[PlacedScene], title: str) -> Figure:
     """Robot, person and load from the robot's right, one panel per height or moment of a lift."""
-    return posture_figure(stages, f"{title} from the robot's right", SIDE)
+    robots = any(agent.role is Role.ROBOT for stage in stages for agent in stage.models.agents)
+    where = "the robot's right" if robots else "the side"
+    return posture_figure(stages, f"{title} from {where}", SIDE)
 
 
 def front_figure(stages: Sequence[PlacedScene], title: str) -> Figure:

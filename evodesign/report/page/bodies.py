@@ -65,7 +65,7 @@ def changes(
     problem: DesignProblem, values: Sequence[float]
 ) -> tuple[dict[int, LinkBody], dict[int, JointBody]]:
     """Links and joints of a design's robot that differ from the unscaled one's, by index in the tree."""
-    before = problem.scene.robot.tree
+    before = problem.scene.designed_tree
     after = problem.space.resized(before, values)
     position, surfaces = _positions(after), _surfaces([after])
     links = enumerate(zip(before.links, after.links, strict=True))

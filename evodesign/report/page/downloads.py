@@ -64,7 +64,7 @@ class Downloads:
 
     def __init__(self, problem: DesignProblem, run: RunLog) -> None:
         self._problem, self._run = problem, run
-        self._unscaled = urdf_text(problem.scene.robot.tree).splitlines()
+        self._unscaled = urdf_text(problem.scene.designed_tree).splitlines()
 
     def urdf(self, robot: Tree) -> dict[int, tuple[str | float, ...]] | str:
         """A robot's URDF as `DesignContent` tells it."""

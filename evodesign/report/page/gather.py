@@ -100,7 +100,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
         importance=importance_json(found),
         families=families_json(kinds),
         bodies=None if problem is None else bodies(problem),
-        urdf="" if problem is None else urdf_text(problem.scene.robot.tree),
+        urdf="" if problem is None else urdf_text(problem.scene.designed_tree),
         designs=_with_slices(
             _designs(run, problem, shown, opened, marked, on_front),
             run,
@@ -142,7 +142,7 @@ def _marks(
 def _unscaled_note(run: RunLog, problem: DesignProblem | None, marked: Sequence[Mark]) -> tuple[str, ...]:
     if problem is None or not run.evaluations or any(mark.kind == "unscaled" for mark in marked):
         return ()
-    if unscaled_genome(problem.space, problem.scene.robot.tree) is None:
+    if unscaled_genome(problem.space, problem.scene.designed_tree) is None:
         return ("the unscaled robot is no design of this problem: it is out of bounds or no choice",)
     return ("no evaluation of this run is of the unscaled robot",)
 
@@ -258,7 +258,7 @@ def _design(
     design = [assessment.design[parameter.name] for parameter in space.parameters]
     values = space.given(design, assessment.rated_torques)
     links, joints = changes(problem, values)
-    robot = problem.space.resized(problem.scene.robot.tree, values)
+    robot = problem.space.resized(problem.scene.designed_tree, values)
     postures = shown_cases(detail.cases)
     try:
         found = known.clearances.of(robot, detail.cases)

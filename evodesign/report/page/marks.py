@@ -26,7 +26,7 @@ MOST_POINTS = 10_000
 
 def unscaled(problem: DesignProblem, evaluations: Sequence[Evaluation]) -> tuple[Mark, ...]:
     """The evaluation of the file's own robot, if the run holds one."""
-    wanted = problem.space.named(problem.space.unscaled(problem.scene.robot.tree))
+    wanted = problem.space.named(problem.space.unscaled(problem.scene.designed_tree))
     for evaluation in evaluations:
         design = evaluation.assessment.design
         if alike((design[name] for name in wanted), wanted.values()):
