@@ -163,7 +163,7 @@ def test_a_problem_of_dictionaries_is_that_of_the_file(
     [
         ({"name": None}, "the problem given"),
         ({"name": object()}, "the problem given: wanted values that TOML has, found a value of type object"),
-        ({"name": "x"}, "the problem given: robot: wanted this key, found nothing"),
+        ({"name": "x"}, "the problem given: payload: wanted this key, found nothing"),
         ({"name": "x", "robot": {"urdf": "no.urdf"}}, "the problem given: payload: wanted this key"),
     ],
 )
