@@ -83,6 +83,7 @@ def test_a_free_worker_is_given_work_that_follows_from_all_that_had_come(tmp_pat
     assert [known for _, known in told] == [0] * 5 + list(range(1, 56))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 @pytest.mark.parametrize(("workers", "later"), [(1, 1), (5, 5), (5, 2), (3, 20)])
 def test_a_stopped_run_goes_on_from_its_log_with_any_number_of_workers(

@@ -142,6 +142,7 @@ print(*(costs[count] for count in (1, 2)))
 """
 
 
+@pytest.mark.slow
 def test_a_kind_of_task(repository: Path, tmp_path: Path) -> None:
     """In a copy of the package, for the registry is a type: two holds cost together what they cost alone."""
     shutil.copytree(repository / "evodesign", tmp_path / "evodesign")

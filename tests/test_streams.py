@@ -105,6 +105,7 @@ def test_a_reader_that_has_gone_ends_a_command_as_sigpipe_does(arguments: Sequen
     assert b"BrokenPipe" not in done.stderr
 
 
+@pytest.mark.slow
 def test_standard_error_that_cannot_be_written_stops_nothing() -> None:
     with Path("/dev/full").open("wb") as full:
         for stream in (unread(), full.fileno()):

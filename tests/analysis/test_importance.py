@@ -86,6 +86,7 @@ def shares(found: Importance, kind: str) -> dict[str, tuple[float, float, float]
     return {name: (each.value, each.low, each.high) for name, each in sorted(rows.items())}
 
 
+@pytest.mark.slow
 def test_importance_agrees_with_salib_on_8192_evaluations_within_what_it_says() -> None:
     """Ishigami's function: SALib from 8,192 evaluations of the function, ours from as many logged designs."""
     problem = {"num_vars": 3, "names": ["x", "y", "z"], "bounds": [[0.0, 1.0]] * 3}

@@ -136,6 +136,7 @@ def options_in_tests(name: str) -> set[str]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_every_command_shown_is_run_with_its_options_or_says_why_not(page: Path) -> None:
     for name, rest in commands(page):

@@ -78,6 +78,7 @@ def test_symmetry_can_be_chosen_on_the_command_line(quick: Path) -> None:
     assert answers["polish"]["robot"]["torque_norm"] != answers["on"]["robot"]["torque_norm"]
 
 
+@pytest.mark.slow
 def test_unknown_symmetry_is_refused(quick: Path) -> None:
     done = evodesign("evaluate", quick, "--symmetry", "polsh")
     assert done.returncode == 2
@@ -115,6 +116,7 @@ def test_figures_of_a_design_need_no_search(quick: Path, cold: tuple[dict, str],
     assert "point-grasp, unscaled: postures from the" in title
 
 
+@pytest.mark.slow
 def test_a_place_for_figures_that_cannot_be_made_is_refused_before_anything_is_solved(
     quick: Path, tmp_path: Path
 ) -> None:
@@ -124,6 +126,7 @@ def test_a_place_for_figures_that_cannot_be_made_is_refused_before_anything_is_s
     assert "--plot: wanted a folder that can be written" in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("height", "code", "statuses"), [(1.45, 5, {"infeasible"}), (0.8, 0, {"solved"})])
 def test_the_exit_code_says_whether_any_case_is_solved(
     height: float, code: int, statuses: set[str], repository: Path, tmp_path: Path

@@ -79,6 +79,7 @@ def test_a_robot_with_three_thousand_fixed_children_is_read_within_bounds(spread
     assert all(line.startswith("note: ") for line in done.stderr.splitlines())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("more", "words"),
     [

@@ -151,6 +151,7 @@ def test_what_is_no_humanoid_is_refused_in_a_sentence(
     assert not (tmp_path / "new.toml").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.needs_robots
 @pytest.mark.usefixtures("few_designs_meet")
 def test_a_public_robot_without_shapes_is_left_to_a_person_who_then_evaluates_it(
@@ -196,6 +197,7 @@ def guessed(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
     return written
 
 
+@pytest.mark.slow
 @pytest.mark.needs_robots
 @pytest.mark.parametrize("name", [name for name in HUMANOIDS if name not in HELD])
 def test_a_public_humanoid_is_guessed_whole(name: str, guessed: Callable[[str], Path]) -> None:

@@ -54,6 +54,7 @@ def guessed(robot: Path, to: Path) -> str:
     return before + walls[0].partition("\n#\n")[2]
 
 
+@pytest.mark.slow
 def test_the_same_problem_is_guessed_from_either_form(robot: Path, tmp_path: Path) -> None:
     of_mjcf, of_urdf = (
         guessed(robot.with_suffix(suffix), tmp_path / f"{suffix[1:]}.toml") for suffix in (".xml", ".urdf")

@@ -57,6 +57,7 @@ def whole(
     return run, done.stdout, done.stderr
 
 
+@pytest.mark.slow
 def test_search_prints_its_front_and_where_the_run_lies(whole: tuple[Path, str, str]) -> None:
     run, stdout, stderr = whole
     assert str(run) in stdout
@@ -154,6 +155,7 @@ def test_a_run_of_other_versions_is_refused_unless_accepted(
     assert remembered(tmp_path / "old") == remembered(whole[0])
 
 
+@pytest.mark.slow
 def test_plain_mcap_reader_reads_the_finished_run(whole: tuple[Path, str, str]) -> None:
     topics: dict[str, int] = {}
     with (whole[0] / "000.mcap").open("rb") as stream:
@@ -171,6 +173,7 @@ def test_plain_mcap_reader_reads_the_finished_run(whole: tuple[Path, str, str]) 
     assert topics == {"/run": 1, "/evaluation": BUDGET, "/generation": generations, "/front": generations}
 
 
+@pytest.mark.slow
 def test_run_cut_anywhere_gives_what_had_arrived_before_the_cut(
     whole: tuple[Path, str, str], tmp_path: Path
 ) -> None:
@@ -187,6 +190,7 @@ def test_run_cut_anywhere_gives_what_had_arrived_before_the_cut(
     assert lengths[-1] == BUDGET
 
 
+@pytest.mark.slow
 def test_front_as_json_holds_its_designs(whole: tuple[Path, str, str], tmp_path: Path) -> None:
     plot = tmp_path / "front.html"
     found = json.loads(evodesign("front", whole[0], "--json", "--plot", plot).stdout)
@@ -198,6 +202,7 @@ def test_front_as_json_holds_its_designs(whole: tuple[Path, str, str], tmp_path:
     assert "Plotly" in plot.read_text()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("known")
 def test_evaluate_answers_in_full(repository: Path) -> None:
     problem = repository / "problems" / "point_grasp.toml"
@@ -219,6 +224,7 @@ def test_evaluate_answers_in_full(repository: Path) -> None:
         assert max(height["residuals"].values()) < 1e-5
 
 
+@pytest.mark.slow
 def test_check_shows_what_each_parameter_changes(repository: Path) -> None:
     problem = repository / "problems" / "point_grasp.toml"
     found = json.loads(evodesign("check", problem, "--json").stdout)

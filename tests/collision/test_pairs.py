@@ -11,6 +11,7 @@ from tempfile import TemporaryDirectory
 import coal
 import numpy as np
 import pinocchio as pin
+import pytest
 
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement
@@ -71,6 +72,7 @@ def test_a_pair_that_always_overlaps_is_not_collision_pairs() -> None:
     assert ("ball 0", "ball 4") in checked
 
 
+@pytest.mark.slow
 def test_every_exemption_has_the_reason_that_is_found_by_drawing_other_postures(
     problem: DesignProblem,
 ) -> None:

@@ -71,6 +71,7 @@ def test_every_search_can_go_without_generations():
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 class TestEveryAsynchronousSearch:
+    @pytest.mark.slow
     @pytest.mark.parametrize("population", [3, 4, 12, 70])
     @pytest.mark.parametrize("workers", [1, 5, 40])
     def test_asks_for_points_of_the_unit_cube(self, algorithm, population, workers):
@@ -95,6 +96,7 @@ class TestEveryAsynchronousSearch:
             rebuilt.ask(turn) for turn in range(200, 230)
         ]
 
+    @pytest.mark.slow
     def test_what_was_asked_and_never_told_leaves_no_trace(self, algorithm):
         wasteful, careful = (make_asynchronous_search(settings(algorithm, dimension=24)) for _ in range(2))
         for turn in range(150):
@@ -110,6 +112,7 @@ class TestEveryAsynchronousSearch:
         run(search, 60)
         assert search.ask(60) == search.ask(60)
 
+    @pytest.mark.slow
     def test_a_genome_depends_on_the_order_of_arrival_where_the_search_learns(self, algorithm):
         one = run(make_asynchronous_search(settings(algorithm)), 120, order=1)
         other = run(make_asynchronous_search(settings(algorithm)), 120, order=2)
@@ -156,6 +159,7 @@ class TestEveryAsynchronousSearchOfChoices:
     def discrete(self, algorithm):
         return msgspec.structs.replace(settings(algorithm), choices=self.CHOICES)
 
+    @pytest.mark.slow
     def test_asks_only_for_the_middles_of_choices_and_for_each_of_them(self, algorithm):
         log = run(make_asynchronous_search(self.discrete(algorithm)), 360)
         for position, count in enumerate(self.CHOICES):
@@ -163,6 +167,7 @@ class TestEveryAsynchronousSearchOfChoices:
             expected = {(choice + 0.5) / count for choice in range(count)}
             assert seen == expected if count else len(seen) > 100
 
+    @pytest.mark.slow
     def test_the_order_of_arrival_rebuilds_the_search(self, algorithm):
         search = make_asynchronous_search(self.discrete(algorithm))
         log = run(search, 120, workers=7)
@@ -180,6 +185,7 @@ class TestEveryAsynchronousSearchOfChoices:
 
 @pytest.mark.parametrize("algorithm", LEARNING)
 class TestEveryAsynchronousSearchThatLearns:
+    @pytest.mark.slow
     def test_one_objective_is_minimised(self, algorithm):
         log = run(make_asynchronous_search(settings(algorithm, objectives=1)), 400, workers=6, objectives=1)
         values = [bowls(genome, 1).objectives for *_, genome in log]

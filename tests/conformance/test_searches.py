@@ -54,6 +54,7 @@ def run(search, generations, objectives=2, outcome=mixed):
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 class TestEverySearch:
+    @pytest.mark.slow
     @pytest.mark.parametrize("population", [3, 4, 7, 12, 70])
     def test_asks_for_a_population_of_points_of_the_unit_cube(self, algorithm, population):
         search = make_search(settings(algorithm, population=population))
@@ -65,6 +66,7 @@ class TestEverySearch:
                 assert len(genome) == 5
                 assert all(type(coordinate) is float and 0.0 <= coordinate <= 1.0 for coordinate in genome)
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(("dimension", "objectives"), [(1, 1), (1, 2), (2, 1), (3, 4), (16, 3)])
     def test_takes_any_number_of_dimensions_and_objectives(self, algorithm, dimension, objectives):
         search = make_search(settings(algorithm, dimension=dimension, objectives=objectives))
@@ -72,6 +74,7 @@ class TestEverySearch:
         assert {len(genomes) for genomes in asked} == {12}
         assert len(set(asked)) == 6
 
+    @pytest.mark.slow
     def test_asks_for_distinct_genomes_within_a_generation(self, algorithm):
         for genomes in run(make_search(settings(algorithm)), 10):
             assert len(set(genomes)) == len(genomes)
@@ -224,6 +227,7 @@ def middles(count):
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 class TestEverySearchOfChoices:
+    @pytest.mark.slow
     def test_asks_only_for_the_middles_of_choices_and_for_each_of_them(self, algorithm):
         asked = [genome for genomes in run(make_search(discrete(algorithm)), 30) for genome in genomes]
         for position, count in enumerate(CHOICES):
@@ -285,6 +289,7 @@ class TestEverySearchThatLearns:
         assert failures[0] >= 4
         assert sum(failures[-5:]) / 5 < 0.8 * failures[0]
 
+    @pytest.mark.slow
     def test_one_objective_is_minimised(self, algorithm):
         asked = run(make_search(settings(algorithm, objectives=1)), 30, 1, bowls)
         least = [

@@ -111,6 +111,7 @@ def test_registry_and_terms_agree_on_names() -> None:
     assert {name: term.name for name, term in TERMS.items()} == {name: name for name in TERMS}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_rows_say_what_the_residuals_say(problem: DesignProblem, forms: tuple[Form, Form], seed: int) -> None:
     """At random values of all variables, in every load case: another library finds the same violations."""
@@ -216,6 +217,7 @@ def test_torques_beyond_their_limits_are_seen(problem: DesignProblem) -> None:
     assert "human.torque_limits" not in found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", TERMS)
 def test_derivatives_of_a_term_agree_with_differences(
     name: str, problem: DesignProblem, forms: tuple[Form, Form]

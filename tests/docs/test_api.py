@@ -66,6 +66,7 @@ def test_what_is_imported_or_given_has_an_example(each: Documented) -> None:
     assert examples(each)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("each", [each for each in ALL if examples(each)], ids=lambda each: each.name)
 def test_examples_work_as_they_stand(each: Documented, names: dict[str, Any]) -> None:
     test = doctest.DocTestParser().get_doctest(each.text, dict(names), each.name, None, None)

@@ -31,6 +31,7 @@ def test_the_file_named_has_these_words(wheel: str, file: str, words: str) -> No
     assert words in re.sub(r"\s+", " ", text)
 
 
+@pytest.mark.slow
 def test_libraries_named_are_in_the_wheels() -> None:
     files = {row[0]: {path.name for path in distribution(row[0]).files or ()} for row in ROWS}
     library = re.compile(r"`(lib[\w.-]*\.so[\w.]*)`")

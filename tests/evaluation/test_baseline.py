@@ -101,6 +101,7 @@ def test_a_start_that_fails_is_a_row(repository: Path, tmp_path: Path) -> None:
     assert front(run.header.objectives, run.evaluations) == ()
 
 
+@pytest.mark.slow
 def test_limits_that_are_not_enforced_are_named(repository: Path) -> None:
     """In the reason of a height that is solved all the same, and not counted as residuals."""
     published = read_source(repository / "problems" / "sartore2022_as_published.toml")

@@ -49,6 +49,7 @@ def results(hardware: DesignProblem) -> list[DesignResult]:
     return found
 
 
+@pytest.mark.slow
 def test_the_bill_adds_up_and_names_what_governs(
     hardware: DesignProblem, results: list[DesignResult]
 ) -> None:
@@ -73,10 +74,12 @@ def test_the_bill_adds_up_and_names_what_governs(
     assert wall["safety_case"] in {str(solution.case.task) for solution in result.cases}
 
 
+@pytest.mark.slow
 def test_a_problem_without_hardware_has_no_bill(problem: DesignProblem) -> None:
     assert bill_of_materials(problem, problem.scene.robot.tree, []) == {}
 
 
+@pytest.mark.slow
 def test_an_exported_urdf_has_limits_and_masses(results: list[DesignResult]) -> None:
     tree = results[0].tree
     again = read_urdf(urdf_text(tree), "robot.urdf", InertiaRule.FILE)
@@ -100,6 +103,7 @@ def posed(tree: Tree, posture: AgentPosture) -> tuple[mujoco.MjModel, mujoco.MjD
     return model, data
 
 
+@pytest.mark.slow
 def test_mujoco_holds_every_posture_with_motors_within_their_rating(
     hardware: DesignProblem, results: list[DesignResult]
 ) -> None:

@@ -159,6 +159,7 @@ def test_what_another_try_might_not_give_is_not_kept(
     assert calls(tmp_path / "calls") == 2
 
 
+@pytest.mark.slow
 def test_two_searches_at_the_same_time_solve_each_design_once(source: ProblemSource, tmp_path: Path) -> None:
     factory = Counting(source, str(tmp_path / "calls"), seconds=0.05)
     genomes = [(number / 10.0,) for number in range(10) for _ in range(4)]

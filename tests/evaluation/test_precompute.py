@@ -84,6 +84,7 @@ def test_all_pieces_are_told_before_the_first_is_worked_out(
     assert len(watcher.ready) == len({*watcher.ready}) == forgetful.worked_out == sum(told)
 
 
+@pytest.mark.slow
 def test_starts_of_other_heights_are_sought_from_those_of_the_middle_one(
     problem: DesignProblem, known: Precomputed, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -113,6 +113,7 @@ def _heavier(link, factor):  # type: ignore[no-untyped-def]
     return replace(link, solids=solids)
 
 
+@pytest.mark.slow
 @pytest.mark.needs_robots
 def test_with_a_g1_nobody_has_less_torque_than_forearms_weigh() -> None:
     text = Path(HUMANOIDS["g1"]).read_text(encoding="utf-8")

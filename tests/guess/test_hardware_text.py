@@ -58,6 +58,7 @@ def test_with_its_marks_it_changes_nothing() -> None:
     assert {*tables["design"]} == {"allocation", "length"}
 
 
+@pytest.mark.slow
 def test_a_design_with_hardware_is_evaluated() -> None:
     problem = built(humanoid(Build()), {"[collisions]  # nothing passes through anything": ""})
     problem = replace(problem, tasks=problem.tasks[1:2])

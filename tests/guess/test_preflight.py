@@ -69,6 +69,7 @@ def put(old: str, new: str) -> Change:
     return change
 
 
+@pytest.mark.slow
 def test_a_guessed_problem_passes_and_says_what_was_found() -> None:
     apart = problem_of(humanoid(Build()), put("[objectives]", "[collisions]\n\n[objectives]"))
     found = {finding.item: finding for finding in preflight(apart)}
@@ -207,6 +208,7 @@ def test_what_cannot_be_is_one_sentence_with_key_and_remedy(
     assert re.match(sentence, first), first
 
 
+@pytest.mark.slow
 def test_a_joint_whose_zero_lies_far_outside_of_its_range_holds_what_it_held() -> None:
     """An encoder's offset of 4 rad: lower and upper limits of the elbows beyond half a turn."""
 

@@ -116,6 +116,7 @@ def in_pinocchio(case: Case) -> tuple[np.ndarray, np.ndarray]:
     return mass, pin.nonLinearEffects(model, model.createData(), q, velocity)[order]
 
 
+@pytest.mark.slow
 @ALL
 def test_mass_matrix_and_bias_are_pinocchios(cases, problem: DesignProblem) -> None:
     for case in cases(problem):

@@ -79,6 +79,7 @@ def test_an_arm_that_does_not_move_has_no_elbow(problem: DesignProblem) -> None:
     assert elbow(replace(robot, joints=stiff), robot.hands[0]) is None
 
 
+@pytest.mark.slow
 @pytest.mark.needs_robots
 @pytest.mark.parametrize("name", HUMANOIDS)
 def test_public_humanoids_have_the_elbows_that_their_makers_name(name: str) -> None:

@@ -261,6 +261,7 @@ def wrenches_of(postures: Mapping[str, AgentPosture], system: CoupledSystem) -> 
     )
 
 
+@pytest.mark.slow
 def test_the_solvers_torques_and_wrenches_are_the_papers(problem: DesignProblem) -> None:
     """20 random designs, equal weights, no limits on forces."""
     solver, scene = boundless(problem)

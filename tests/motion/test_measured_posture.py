@@ -36,6 +36,7 @@ def lifted(problem: DesignProblem) -> Lifted:
     )
 
 
+@pytest.mark.slow
 def test_the_lift_is_solved_and_checked_with_lumbar_joints_at_their_shares(lifted: Lifted) -> None:
     """At all times, and their speeds as well; the person bends more than in a hold at 0.9 m and above."""
     solution = lifted.solve(LIFT)

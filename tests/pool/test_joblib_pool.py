@@ -87,6 +87,7 @@ def test_one_deadly_argument_among_many_is_lost_and_no_other(
     assert all(end.value == words[end.index].upper() for end in ends if end is not lost)
 
 
+@pytest.mark.slow
 def test_when_every_argument_is_deadly_every_one_is_lost() -> None:
     with JoblibPool(3) as pool:
         ends = list(pool.run(deadly, ["kill"] * 5))
@@ -166,6 +167,7 @@ def test_arguments_are_taken_when_a_worker_is_free_and_not_before() -> None:
     assert taken == [0] * 6 + [0, 1, 2, 3, 4, 5], "three at work, three prefetched"
 
 
+@pytest.mark.slow
 def test_an_argument_that_takes_too_long_is_ended_and_costs_no_other_its_worker() -> None:
     with JoblibPool(2) as pool:
         ends = {end.index: end for end in pool.run(Within(Limits(seconds=3.0)), [3600.0, *[0.01] * 8])}
@@ -178,6 +180,7 @@ def test_an_argument_that_takes_too_long_is_ended_and_costs_no_other_its_worker(
     assert late.worker.startswith("local-")
 
 
+@pytest.mark.slow
 def test_the_building_of_a_task_does_not_count_as_time_of_its_first_argument() -> None:
     with JoblibPool(1) as pool:
         (end,) = pool.run(SlowToBuild(seconds=3.5, limits=Limits(seconds=3.0)), [0.01])
@@ -227,6 +230,7 @@ with JoblibPool(2) as pool:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("pause", [0.05, 60.0])
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
 def test_no_worker_outlives_its_parent(how: signal.Signals, pause: float) -> None:
@@ -296,6 +300,7 @@ def test_processes_that_end_before_they_are_given_anything_are_an_argument_lost(
     assert given == [3, 3]
 
 
+@pytest.mark.slow
 def test_a_worker_that_grew_goes_on_without_a_word() -> None:
     script = """
 from evodesign.pool.joblib_pool import JoblibPool

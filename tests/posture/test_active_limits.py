@@ -199,6 +199,7 @@ def solved(problem: DesignProblem, *, halves: bool) -> tuple[JointPostures, Case
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", TIGHT)
 def test_a_tight_limit_costs_what_a_wider_one_saves(problem: DesignProblem, name: str) -> None:
     key, height, changes = TIGHT[name]

@@ -136,6 +136,7 @@ def end(
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("symmetry", [Symmetry.ON, Symmetry.OFF])
 def test_the_robot_carries_the_share_that_it_is_given(symmetry: Symmetry, problem: DesignProblem) -> None:
     for given in (0.0, 0.3, 1.0):

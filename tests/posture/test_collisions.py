@@ -90,6 +90,7 @@ def tree_of(shape: Shape) -> Tree:
     return Tree("one", (link(shape),), ())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("one", SHAPES)
 @pytest.mark.parametrize("other", SHAPES)
 def test_the_best_direction_parts_bodies_as_far_as_they_are_apart(one: Shape, other: Shape) -> None:
@@ -105,6 +106,7 @@ def test_the_best_direction_parts_bodies_as_far_as_they_are_apart(one: Shape, ot
         assert found > 0.0 or apart < 0.01
 
 
+@pytest.mark.slow
 def test_supports_reach_as_far_as_the_points_of_a_shape() -> None:
     rng = np.random.default_rng(2)
     circle = np.linspace(0.0, 2.0 * np.pi, 721)
@@ -123,6 +125,7 @@ def test_supports_reach_as_far_as_the_points_of_a_shape() -> None:
             assert farthest - 2e-6 <= rounded <= farthest + ROUNDING * np.abs(points).max(axis=0).sum()
 
 
+@pytest.mark.slow
 def test_what_fits_a_mesh_holds_all_of_its_points() -> None:
     from evodesign.collision.supports import _least
 
@@ -208,6 +211,7 @@ def test_what_meets_at_corners_of_the_space_is_found_too(
     assert finder.held(apart.tasks[:1]) < everywhere
 
 
+@pytest.mark.slow
 def test_links_are_as_far_apart_as_in_the_world(apart: DesignProblem) -> None:
     """Every pair of links of the person, placed in the frame of a link that carries both and in the world."""
     human, scene = apart.scene.human, apart.scene

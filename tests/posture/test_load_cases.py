@@ -169,6 +169,7 @@ def test_worst_and_mean_are_each_best_at_what_they_minimise(
     assert max(efforts(worst)) <= cost_of(worst) + 0.02 * max(efforts(worst)), "the cost holds the worst case"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2])
 def test_growing_disturbances_never_lower_the_worst_case_optimum(seed: int, problem: DesignProblem) -> None:
     """Smaller ones begin at the posture that is best for larger ones, which holds them as well."""
@@ -274,6 +275,7 @@ def test_with_rigid_grasps_a_push_needs_torques_that_the_undisturbed_posture_doe
     assert pushed.disturbed[AWAY.name][ROBOT].torque_norm > undisturbed.postures[ROBOT].torque_norm + 1.0
 
 
+@pytest.mark.slow
 def test_postures_at_the_reach_with_disturbances_are_in_balance(problem: DesignProblem) -> None:
     """Pushes on the chest from both sides ask for a low stand and the middle of the soles."""
     values = problem.space.unscaled(problem.scene.robot.tree)

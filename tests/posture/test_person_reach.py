@@ -30,7 +30,7 @@ ALONE = ("", "")
 
 @pytest.fixture(scope="module")
 def reach(problem: DesignProblem) -> PersonReach:
-    found = person_reach(problem.scene, problem.options, symmetric=True)
+    found = person_reach(problem.scene, "human", problem.options, symmetric=True)
     assert found is not None
     return found
 
@@ -54,7 +54,7 @@ def test_a_shorter_person_reaches_less_high(problem: DesignProblem, reach: Perso
     """Proportions are those of stature, so the highest load is, but for the box's thickness."""
     tree = human_tree(Person(1.6, 60.0, Sex.MALE))
     scene = problem.scene.with_agents(replace(problem.scene.human, tree=tree))
-    shorter = person_reach(scene, problem.options, symmetric=True)
+    shorter = person_reach(scene, "human", problem.options, symmetric=True)
     assert shorter is not None
     assert shorter.highest / reach.highest == pytest.approx(1.6 / 1.82, abs=0.03)
 

@@ -132,6 +132,7 @@ def test_quantities_of_people_are_refused(name: str) -> None:
         built(objectives=objectives)
 
 
+@pytest.mark.slow
 def test_its_posture_is_drawn_exported_and_simulated(
     alone: DesignProblem, result: DesignResult, tmp_path: Path
 ) -> None:

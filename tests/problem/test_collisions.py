@@ -100,6 +100,7 @@ def test_a_build_that_leaves_bodies_nearer_than_asked_is_refused_before_they_tou
     assert "upper_leg while all joints are at zero: no posture was sought" in found.reason
 
 
+@pytest.mark.slow
 def test_a_design_whose_build_brings_bodies_together_is_infeasible_by_what_they_lack(
     problem: DesignProblem,
 ) -> None:

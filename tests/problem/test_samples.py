@@ -42,6 +42,7 @@ def pool() -> Pool:
     return make_pool("serial", 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("grasp", "samples", "designs"), [("rigid", SAMPLES, DESIGNS), ("point", 3, 2)])
 def test_samples_of_designs_agree_with_separate_runs(
     grasp: str, samples: int, designs: int, pool: Pool

@@ -195,6 +195,7 @@ def test_gradients_of_both_robots_are_those_of_differences(
     assert found.values["robot_torque"][parameter.name] == pytest.approx(slope, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_it_is_told_drawn_and_replayed(
     table_top: DesignProblem, result: DesignResult, tmp_path: Path
 ) -> None:
@@ -385,6 +386,7 @@ def two_people() -> DesignProblem:
     return built(shipped("two_people", task={"heights_m": [0.8, 1.0]}))
 
 
+@pytest.mark.slow
 def test_two_people_hold_a_load_without_a_robot(two_people: DesignProblem) -> None:
     """Hands and weight balance in the world; a quantity is that of both, or of the one who bears most."""
     scene = two_people.scene
@@ -423,6 +425,7 @@ def test_two_people_hold_a_load_without_a_robot(two_people: DesignProblem) -> No
     assert finding.fault == ""
 
 
+@pytest.mark.slow
 def test_a_person_alone_reaches_as_far_as_beside_a_robot() -> None:
     """The reach that is found of a person beside a robot, by another route."""
     problem = built(shipped("person_alone", task={"heights_m": [1.0]}))

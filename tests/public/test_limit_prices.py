@@ -51,6 +51,7 @@ def test_prices_of_the_default_problem_agree_with_differences(repository: Path) 
     check_prices(evaluator_of(problem, 2), 2)
 
 
+@pytest.mark.slow
 @pytest.mark.needs_robots
 def test_prices_of_a_g1_agree_with_differences() -> None:
     urdf = HUMANOIDS["g1"]

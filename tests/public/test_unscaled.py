@@ -94,6 +94,7 @@ ROUNDED, UNTOLD = 0.05, 2e-6
 """Of two digits, the largest share by which a figure is rounded; and what is not worth a word."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["talos", "g1", "icub"])
 def test_an_averaged_robot_differs_from_the_original_by_what_the_note_says(name: str) -> None:
     """A pair's figure is what lies between its two links, of which each moves by half."""

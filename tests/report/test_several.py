@@ -156,6 +156,7 @@ def test_page_holds_everyone_and_every_case(run: RunLog) -> None:
         check_to_seven_digits(design.postures, run.details[number].cases)
 
 
+@pytest.mark.slow
 def test_every_design_of_a_front_has_its_robot_with_everyone(several: DesignProblem, tmp_path: Path) -> None:
     many = write_several(several, tmp_path / "run", designs=80)
     content = page_content(many)

@@ -315,6 +315,7 @@ def test_what_was_told_is_not_copied_for_every_proposal():
     assert knowledge.front()[0].tolist() == [[0.0] * 6]
 
 
+@pytest.mark.slow
 def test_proposals_do_not_depend_on_the_number_of_threads():
     """In processes whose BLAS has one thread and two, which add up in another order."""
     digests = set()

@@ -277,6 +277,7 @@ def test_a_box_on_another_plate_is_left_out(
     assert frame.plate.x == pytest.approx(PRESSED + 0.02, abs=1e-5)
 
 
+@pytest.mark.slow
 def test_the_command_gives_the_same_of_both_files(
     places: list[dict[str, tuple[float, float]]], tmp_path: Path
 ) -> None:

@@ -71,6 +71,7 @@ def test_nothing_is_exchanged_of_one_posture_or_none(problem: DesignProblem, pro
     assert exchange.best([drawn(program, np.random.default_rng(0))], WEIGHTS) is None
 
 
+@pytest.mark.slow
 def test_a_better_pair_than_any_start_leads_to_is_found(problem: DesignProblem) -> None:
     """Of two starts each has one agent of the best posture known, beside the other agent of a bad one."""
     scene, space, task = problem.scene, problem.space, Hold(height_m=1.0)

@@ -45,6 +45,7 @@ def two_with_postures(run: RunLog) -> tuple[int, int]:
     return first, second
 
 
+@pytest.mark.slow
 def test_two_designs_stand_side_by_side(page: Tab, real_run: RunLog) -> None:
     first, second = two_with_postures(real_run)
     page.value(f"window.evodesign.select({first})")
@@ -78,6 +79,7 @@ def test_two_designs_stand_side_by_side(page: Tab, real_run: RunLog) -> None:
     assert page.value("document.getElementById('beside').hidden")
 
 
+@pytest.mark.slow
 def test_parameters_can_be_axes_and_colours(page: Tab, real_run: RunLog) -> None:
     choose(page, "across", "length thigh")
     choose(page, "colour", "density shank")
@@ -93,6 +95,7 @@ def test_parameters_can_be_axes_and_colours(page: Tab, real_run: RunLog) -> None
     assert drawn[2] == [designs[number]["density.shank"] for number in drawn[0]]
 
 
+@pytest.mark.slow
 def test_what_lies_outside_the_axes_is_counted_until_all_is_shown(page: Tab, real_run: RunLog) -> None:
     told = "document.getElementById('outside').textContent"
     page.value("document.getElementById('show-all').click()")
@@ -110,6 +113,7 @@ def test_what_lies_outside_the_axes_is_counted_until_all_is_shown(page: Tab, rea
     assert page.value(f"{PLOT}._fullLayout.yaxis.range[1]") >= max(values)
 
 
+@pytest.mark.slow
 def test_a_link_brings_back_what_was_seen(page: Tab, real_page: Path, real_run: RunLog) -> None:
     first, second = two_with_postures(real_run)
     page.value(f"window.evodesign.select({first})")
@@ -158,6 +162,7 @@ def saved(tab: Tab, button: str) -> bytes:
     return base64.b64decode(letters)
 
 
+@pytest.mark.slow
 def test_the_card_saves_csv_urdf_and_replay(page: Tab, problem: DesignProblem, real_run: RunLog) -> None:
     known = {detail.evaluation for detail in real_run.details}
     number = next(n for n in page.value("window.evodesign.content.marks.map(m => m.number)") if n in known)
@@ -192,6 +197,7 @@ def test_the_card_saves_csv_urdf_and_replay(page: Tab, problem: DesignProblem, r
     assert "evodesign export RUN" in page.value("document.querySelector('.downloads').textContent")
 
 
+@pytest.mark.slow
 def test_arrow_keys_walk_on_after_a_click(page: Tab) -> None:
     page.value("document.getElementById('height').focus()")
     number = page.value(SELECTED)
@@ -217,6 +223,7 @@ def test_arrow_keys_walk_on_after_a_click(page: Tab) -> None:
     assert page.value(SELECTED) != before
 
 
+@pytest.mark.slow
 def test_a_clicked_design_is_seen_at_once_on_a_small_laptop(page: Tab) -> None:
     page.resize(1024, 768)
     page.wait_for("document.documentElement.scrollWidth <= 1024")
@@ -231,6 +238,7 @@ def test_a_clicked_design_is_seen_at_once_on_a_small_laptop(page: Tab) -> None:
         assert right <= 1024
 
 
+@pytest.mark.slow
 def test_a_tap_on_a_phone_goes_to_the_card(page: Tab) -> None:
     page.resize(390, 844)
     page.wait_for("document.documentElement.scrollWidth <= 390")
@@ -258,6 +266,7 @@ def test_a_tap_on_a_phone_goes_to_the_card(page: Tab) -> None:
     assert page.value("scrollY") == 0, "a wide page has its card beside the front"
 
 
+@pytest.mark.slow
 def test_on_a_phone_nothing_is_wider_than_the_page_and_axes_have_room(page: Tab, real_run: RunLog) -> None:
     first, second = two_with_postures(real_run)
     page.value(f"window.evodesign.select({first}); document.getElementById('put-beside').click();")

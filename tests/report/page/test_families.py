@@ -21,6 +21,7 @@ pytestmark = pytest.mark.needs_chromium
 MAP = "document.getElementById('families')"
 
 
+@pytest.mark.slow
 def test_a_design_outside_the_map_is_said_to_be(tmp_path: Path, chromium: Tab) -> None:
     header = toy_header(budget=60)
     described = (Descriptor("arm.0", 1.0, 1.5, 5), Descriptor("arm.1", None, None, 5))

@@ -63,6 +63,7 @@ def page(run: RunLog) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_the_card_shows_what_the_bill_says(
     chromium: Tab, run: RunLog, page: Path, hardware: DesignProblem
 ) -> None:
@@ -92,6 +93,7 @@ def test_the_card_shows_what_the_bill_says(
     assert chromium.complaints() == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", [390, 1024])
 def test_the_tables_fit_into_a_card(chromium: Tab, page: Path, width: int) -> None:
     chromium.open(page.as_uri(), width=width)
@@ -101,5 +103,6 @@ def test_the_tables_fit_into_a_card(chromium: Tab, page: Path, width: int) -> No
         assert chromium.value(f"{section}.scrollWidth <= {section}.clientWidth"), title
 
 
+@pytest.mark.slow
 def test_a_problem_without_hardware_has_no_such_sections(real_run: RunLog) -> None:
     assert all(design.hardware is None for design in page_content(real_run).designs.values())

@@ -30,6 +30,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> RunLog:
     return read_run(directory)
 
 
+@pytest.mark.slow
 def test_shares_slices_and_sentences_are_those_of_the_command(run: RunLog, chromium: Tab) -> None:
     path = run.directory / "report.html"
     path.write_text(page_html(page_content(run)), encoding="utf-8")

@@ -69,6 +69,7 @@ def test_triangles_are_told_once_and_a_design_tells_where_they_are(clad: DesignP
             assert body.shapes == ()
 
 
+@pytest.mark.slow
 @pytest.mark.needs_chromium
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_a_browser_draws_each_mesh_where_its_link_is(

@@ -24,6 +24,7 @@ def test_the_content_has_the_spread_only_where_people_were_drawn(
     assert page_content(read_run(repository / "tests/golden/lifting/format-2")).spread is None
 
 
+@pytest.mark.slow
 @pytest.mark.needs_chromium
 def test_the_page_shows_on_how_many_fronts_a_design_is(
     run_with_people: Path, tmp_path: Path, chromium: Tab

@@ -41,6 +41,7 @@ def choose(tab: Tab, control: str, option: int) -> None:
     tab.value(f"(() => {{ {script} s.dispatchEvent(new Event('change')); }})()")
 
 
+@pytest.mark.slow
 def test_links_of_each_case_stand_where_that_persons_kinematics_puts_them(page: Tab, run: RunLog) -> None:
     for place, (human, _, _) in enumerate(CASES):
         script = (
@@ -52,6 +53,7 @@ def test_links_of_each_case_stand_where_that_persons_kinematics_puts_them(page: 
         check_poses(page, script, human_tree(PEOPLE[human]), posture, math.pi, within=2e-6)
 
 
+@pytest.mark.slow
 def test_choosing_person_load_and_height_shows_that_case(page: Tab, run: RunLog) -> None:
     number = page.value("window.evodesign.state.selected")
     pictures = set()
@@ -81,6 +83,7 @@ def test_choosing_person_load_and_height_shows_that_case(page: Tab, run: RunLog)
     assert len(pictures) == len(CASES)
 
 
+@pytest.mark.slow
 def test_a_click_on_a_case_shows_it_and_its_number_is_the_logs(page: Tab, run: RunLog) -> None:
     number = page.value("window.evodesign.state.selected")
     outcomes = run.evaluations[number].assessment.cases
@@ -95,6 +98,7 @@ def test_a_click_on_a_case_shows_it_and_its_number_is_the_logs(page: Tab, run: R
     assert page.value("document.getElementById('person').value") == "0"
 
 
+@pytest.mark.slow
 def test_controls_of_people_and_loads_have_names(page: Tab) -> None:
     for control, name in (("person", "Person"), ("payload", "Load")):
         label = f"document.getElementById('{control}').labels[0].firstChild.textContent"
