@@ -22,6 +22,7 @@ from evodesign.body.material import Material
 from evodesign.body.placement import Scalar
 from evodesign.hardware.actuators import Actuator, actuator_among, actuator_law
 from evodesign.records import Parameter, middle_of
+from evodesign.tree.joint_changes import JointChange
 
 ROBOT_SHARE, EFFORT_RATIO = "robot_share", "effort_ratio"
 
@@ -64,7 +65,14 @@ class ParameterKind(StrEnum):
     ACTUATOR = "actuator"
     MARGIN = "margin"
     ALLOCATION = "allocation"
+    OFFSET = "offset"
+    TILT = "tilt"
+    LOWER = "lower"
+    UPPER = "upper"
 
+
+OF_JOINTS = frozenset({ParameterKind.OFFSET, ParameterKind.TILT, ParameterKind.LOWER, ParameterKind.UPPER})
+"""Parameters that say where joints are, how their axes point and how far they turn."""
 
 UNITS = {
     ParameterKind.LENGTH: "1",
@@ -73,6 +81,10 @@ UNITS = {
     ParameterKind.ACTUATOR: "N m",
     ParameterKind.MARGIN: "1",
     ParameterKind.ALLOCATION: "1",
+    ParameterKind.OFFSET: "m",
+    ParameterKind.TILT: "rad",
+    ParameterKind.LOWER: "rad",
+    ParameterKind.UPPER: "rad",
 }
 
 
@@ -90,6 +102,7 @@ class DesignParameter:
             bounds will do.
         joints: names of the joints that share an actuator.
         models: of which an actuator must be one, the weakest first; none if the law makes one of any size.
+        changes: of joints, that the value makes.
     """
 
     kind: ParameterKind
@@ -100,6 +113,7 @@ class DesignParameter:
     materials: tuple[Material, ...] = ()
     joints: tuple[str, ...] = ()
     models: tuple[Actuator, ...] = ()
+    changes: tuple[JointChange, ...] = ()
 
     @property
     def choices(self) -> tuple[float, ...]:

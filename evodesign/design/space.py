@@ -22,6 +22,7 @@ from evodesign.errors import ModelError
 from evodesign.hardware.actuators import Actuator
 from evodesign.records import Genome, Parameter, design_of
 from evodesign.tree.equip import with_actuators, with_walls
+from evodesign.tree.joint_changes import unchanged_value, with_changes
 from evodesign.tree.model import Tree
 from evodesign.tree.resize import Growth, growth_of, resize
 from evodesign.tree.symmetry import mirror_of
@@ -71,6 +72,7 @@ class DesignSpace:
             for what, names, partners in (
                 ("links", parameter.links, mirror.links),
                 ("joints", parameter.joints, mirror.joints),
+                ("joints", tuple(each.joint for each in parameter.changes), mirror.joints),
             ):
                 for name in names:
                     if partners[name] not in names:
@@ -78,8 +80,14 @@ class DesignSpace:
                         raise ModelError(
                             tree.name, f"{parameter.name}.{what}", f"both {what} of a pair", found
                         )
-        values = self.unscaled(tree)
-        changed = [value * (1.1 + 0.01 * number) for number, value in enumerate(values)]
+        changed = [
+            parameter.lower + (0.6 + 0.01 * number) * (parameter.upper - parameter.lower)
+            if parameter.changes
+            else value * (1.1 + 0.01 * number)
+            for number, (parameter, value) in enumerate(
+                zip(self.parameters, self.unscaled(tree), strict=True)
+            )
+        ]
         try:
             mirror_of(without_frames(self.resized(tree, changed), ()))
         except ModelError as error:
@@ -165,6 +173,8 @@ class DesignSpace:
     def _unscaled_value(self, parameter: DesignParameter, tree: Tree) -> float:
         if parameter.kind is ParameterKind.LENGTH:
             return 1.0
+        if parameter.changes:
+            return unchanged_value(tree, parameter.changes[0])
         if parameter.kind is ParameterKind.ALLOCATION:
             return ALLOCATIONS[parameter.group].usual
         if parameter.joints or parameter.kind is ParameterKind.WALL:
@@ -215,4 +225,10 @@ class Family:
         for parameter, value in zip(self.space.parameters, values, strict=True):
             by_kind[parameter.kind].update(dict.fromkeys(parameter.links, value))
         tree = with_walls(self.tree, walls_of_links(self.space.walls, by_kind[ParameterKind.WALL]))
-        return resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY], self.growths)
+        tree = resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY], self.growths)
+        changes = [
+            (change, value)
+            for parameter, value in zip(self.space.parameters, values, strict=True)
+            for change in parameter.changes
+        ]
+        return with_changes(tree, changes) if changes else tree

@@ -154,6 +154,7 @@ class Agent:
         collisions: what its bodies keep clear of; None: they may pass through anything.
         gaze: from where it looks at the load; None: it may look anywhere.
         bent_ranges: of joints that stay bent in postures, within their limits [rad], by name.
+        chosen_ranges: widest limits of joints whose own limits a design chooses [rad], by name.
         measured: what its posture is drawn to; None: torques alone decide.
         stance: limits of its postures; None: those of the scene.
         quarters: quarter turns about z that take its frame to the world.
@@ -175,6 +176,7 @@ class Agent:
     collisions: CollisionRules | None = None
     gaze: Gaze | None = None
     bent_ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    chosen_ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     measured: MeasuredPosture | None = None
     stance: StanceLimits | None = None
     quarters: int = 0

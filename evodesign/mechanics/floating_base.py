@@ -140,6 +140,8 @@ class FloatingBody:
             raise ValueError("a solid is not resized")
         carriers, moved, changed = dict(built.carriers), set(), set()
         joints = {joint.name: joint for joint in tree.joints}
+        if any(joints[name].axis != before.axis for name, before in built.tree.joint_by_name.items()):
+            return FloatingBody.of_tree(tree, self.joints, self.world_from_given)
         for unscaled in built.joints:
             joint = joints[unscaled.name]
             if joint is unscaled and joint.parent not in moved:

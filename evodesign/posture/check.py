@@ -145,7 +145,13 @@ def _rotors(tree: Tree) -> dict[str, float]:
 
 
 def _limited(agent: Agent, tree: Tree) -> Agent:
-    """The agent with the limits of a tree's actuators."""
+    """The agent with the limits of a tree's actuators, and of joints whose limits a design chooses."""
+    joints = tree.joint_by_name
+    if agent.chosen_ranges:
+        chosen = {
+            name: (float(joints[name].lower), float(joints[name].upper)) for name in agent.chosen_ranges
+        }
+        agent = replace(agent, bent_ranges={**agent.bent_ranges, **chosen})
     rated = {joint: limit for joint, limit in rated_torques(tree).items() if joint in agent.joints}
     if not rated:
         return agent

@@ -23,6 +23,7 @@ from evodesign.problem.agents import (
 from evodesign.problem.collisions import with_collisions
 from evodesign.problem.constraints import constraints_of, refuse_constraints, with_bodies_apart
 from evodesign.problem.descriptors import LOWEST_REACH, search_descriptors
+from evodesign.problem.design_joints import joint_ranges_of
 from evodesign.problem.design_space import (
     check_allocations,
     effort_weights,
@@ -257,6 +258,14 @@ def build_problem(source: ProblemSource) -> DesignProblem:
     check_allocations(tables, source)
     scenes = tuple(replace(scene, robot_share=robot_share(tables, source, scene)) for scene in scenes)
     space = space_of(tables, source, scenes[0].designed_tree)
+    scenes = tuple(
+        scene.with_agents(
+            *(replace(robot, chosen_ranges=joint_ranges_of(space, robot, source)) for robot in scene.designed)
+        )
+        if any(parameter.changes for parameter in space.parameters)
+        else scene
+        for scene in scenes
+    )
     resolved = resolved_symmetry(tables, source, scenes, space)
     scenes = with_collisions(tables, source, resolved.scenes, space)
     tree = scenes[0].designed_tree

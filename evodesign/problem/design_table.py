@@ -8,7 +8,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-from evodesign.problem.table import Name, Positive, Share, Table
+from evodesign.problem.table import Name, Point, Positive, Share, Table
 
 Margin = Annotated[float, Meta(ge=1.0)]
 
@@ -20,6 +20,24 @@ class LengthTable(Table, frozen=True):
     links: Annotated[tuple[Name, ...], Meta(min_length=1)]
     lower: Positive
     upper: Positive
+
+
+class JointTable(Table, frozen=True):
+    """`[[design.joint]]`: a joint, or two that are mirror images; bounds of what changes of them.
+
+    `offset_m` moves the first joint's origin along `along`, an axis of its parent link; `tilt_deg` turns its
+    axis about `about`, an axis of its own frame; `lower_deg` and `upper_deg` are its limits. The other joint
+    of a pair changes as the mirror image.
+    """
+
+    name: Name
+    joints: Annotated[tuple[Name, ...], Meta(min_length=1, max_length=2)]
+    offset_m: tuple[float, float] | None = None
+    along: Point | None = None
+    tilt_deg: tuple[float, float] | None = None
+    about: Point | None = None
+    lower_deg: tuple[float, float] | None = None
+    upper_deg: tuple[float, float] | None = None
 
 
 class DensityTable(Table, frozen=True):
@@ -148,6 +166,7 @@ class DesignTable(Table, frozen=True):
     """`[design]`: what may change."""
 
     length: tuple[LengthTable, ...] = ()
+    joint: tuple[JointTable, ...] = ()
     density: tuple[DensityTable, ...] = ()
     wall: tuple[WallTable, ...] = ()
     actuator: tuple[ActuatorTable, ...] = ()

@@ -15,6 +15,7 @@ from evodesign.problem.design_hardware import (
     wall_parameters,
     walls_of,
 )
+from evodesign.problem.design_joints import joint_parameters
 from evodesign.problem.design_space import (
     density_parameters,
 )
@@ -84,6 +85,7 @@ def space_of(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSp
         DesignParameter(ParameterKind.LENGTH, t.name, t.links, t.lower, t.upper) for t in tables.design.length
     ]
     parameters += density_parameters(tables, source)
+    joints = joint_parameters(tables, source, tree)
     parameters += wall_parameters(tables, source)
     parameters += actuator_parameters(tables, source, tree)
     parameters += [
@@ -91,10 +93,10 @@ def space_of(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSp
         for t in tables.design.allocation
     ]
     if not tables.robots:
-        if parameters:
+        if parameters or tables.design.joint:
             raise InputError(source.path, "design", "a [robot] that it changes", "people alone")
         return DesignSpace(())
-    if not parameters:
+    if not parameters and not joints:
         raise InputError(source.path, "design", "a parameter, such as a length", "none")
     seen: dict[tuple[ParameterKind, str], str] = {}
     positions = dict.fromkeys(ParameterKind, 0)
@@ -102,7 +104,7 @@ def space_of(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSp
         key = f"design.{parameter.kind}[{positions[parameter.kind]}]"
         positions[parameter.kind] += 1
         _check_parameter(parameter, key, source, tree, seen)
-    space = DesignSpace(tuple(parameters), walls_of(tables, source, tree))
+    space = DesignSpace((*parameters, *joints), walls_of(tables, source, tree))
     if space.margins and tables.task.lift:
         key = f"design.{parameters[space.margins[0]].kind}"
         raise InputError(source.path, key, "rated torques where a load is lifted, no margins", "a margin")

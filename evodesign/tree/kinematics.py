@@ -43,8 +43,8 @@ def vector(triple: Vector) -> Expression:
 
 
 def axis_rotation(axis: Vector, angle: Expression) -> Expression:
-    """Rotation by an angle [rad] about a unit vector of numbers (Rodrigues): 1 + sin K + (1 - cos) K^2."""
-    cross = ca.skew(ca.DM(list(axis)))
+    """Rotation by an angle [rad] about a unit vector (Rodrigues): 1 + sin K + (1 - cos) K^2."""
+    cross = ca.skew(vector(axis))
     return ca.DM.eye(3) + ca.sin(angle) * cross + (1.0 - ca.cos(angle)) * (cross @ cross)
 
 

@@ -16,6 +16,7 @@ import pinocchio as pin
 import pytest
 
 from evodesign.body.shape import Box, Cylinder, Sphere
+from evodesign.collision.rules import partner_side
 from evodesign.errors import InputError
 from evodesign.evaluation.evaluate import Evaluator, case_outcome
 from evodesign.evaluation.evaluation_json import evaluation_json
@@ -30,7 +31,7 @@ from evodesign.posture.formulations.reach import person_reach
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.model_json import model_json
 from evodesign.problem.shipped import SHIPPED
-from evodesign.problem.source import read_source, source_of
+from evodesign.problem.source import source_of
 from evodesign.quantities.design_result import DesignResult
 from evodesign.quantities.objectives import objective_value
 from evodesign.quantities.person_quantities import compression
@@ -143,24 +144,42 @@ def test_everyone_holds_the_table_top(table_top: DesignProblem, result: DesignRe
     assert moment == pytest.approx(0.0, abs=1e-4)
 
 
+@pytest.mark.parametrize("size", [(0.8, 0.7, 0.03), (0.3, 1.2, 0.2)])
+@pytest.mark.parametrize(("one", "other"), [(0, 1), (1, 2), (3, 0), (0, 2), (1, 3)])
+def test_two_agents_are_parted_by_one_plane(size: tuple[float, ...], one: int, other: int) -> None:
+    """Each is told the way to the other's side; both have their middle, and their edge's, on their own."""
+    ways = []
+    for own, its in ((one, other), (other, one)):
+        faced = size if own % 2 == 0 else (size[1], size[0], size[2])
+        way = np.array(partner_side(faced, its - own))
+        assert way @ [-faced[0] / 2.0, 0.0, 0.0] < 0.0
+        turn = math.pi / 2.0 * own
+        cos, sin = math.cos(turn), math.sin(turn)
+        ways.append(np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]) @ way)
+    assert np.linalg.norm(ways[0]) == pytest.approx(1.0)
+    assert ways[0] == pytest.approx(-ways[1], abs=1e-12)
+
+
 @pytest.mark.slow
 def test_nobody_touches_anybody_of_a_team_that_was_made_ready() -> None:
     """Coal measures all bodies of different agents."""
-    problem = build_problem(read_source("table-top"))
+    tables = tomllib.loads((SHIPPED / "table_top.toml").read_text(encoding="utf-8"))
+    tables["task"]["heights_m"], tables["design"]["length"] = [1.0], tables["design"]["length"][:1]
+    problem = build_problem(source_of(tables))
     with JoblibPool(1) as pool:
         known = cached_precomputed(problem, pool)
     result = Evaluator(problem, known).solve(problem.space.unscaled(problem.scene.robot.tree))
     asked, found = coal.DistanceRequest(), coal.DistanceResult()
-    for solution in result.cases:
-        assert solution.solved, solution.reason
-        everyone = [
-            shapes(agent, result.tree if agent.designed else agent.tree, solution.postures[agent.name])
-            for agent in problem.scene.agents
-        ]
-        for own, other in combinations(everyone, 2):
-            for (name, form, at), (beside, second, there) in product(own, other):
-                found.clear()
-                assert coal.distance(form, at, second, there, asked, found) > 0.0, f"{name}, {beside}"
+    (solution,) = result.cases
+    assert solution.solved, solution.reason
+    everyone = [
+        shapes(agent, result.tree if agent.designed else agent.tree, solution.postures[agent.name])
+        for agent in problem.scene.agents
+    ]
+    for own, other in combinations(everyone, 2):
+        for (name, form, at), (beside, second, there) in product(own, other):
+            found.clear()
+            assert coal.distance(form, at, second, there, asked, found) > 0.0, f"{name}, {beside}"
 
 
 def test_torques_are_those_of_all_robots_together(table_top: DesignProblem, result: DesignResult) -> None:

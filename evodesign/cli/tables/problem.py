@@ -139,10 +139,10 @@ def _add_link(table: FittedTable, link: dict[str, Any]) -> None:
 
 
 def _parameters_table(parameters: Iterable[dict[str, Any]]) -> FittedTable:
-    table = titled("parameters", names("parameter", "from", "to", "unit", "links"))
+    table = titled("parameters", names("parameter", "from", "to", "unit", "links or joints"))
     for parameter in parameters:
         bounds = (rounded(parameter["lower"]), rounded(parameter["upper"]), parameter["unit"])
-        links = ", ".join(link["link"] for link in parameter["links"])
+        links = ", ".join([*(link["link"] for link in parameter["links"]), *parameter.get("joints", ())])
         if "materials" in parameter:
             links = f"{links}; of {', '.join(parameter['materials'])}"
         table.add_row(escape(parameter["name"]), *bounds, escape(links))

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import casadi as ca
 import numpy as np
@@ -15,7 +16,16 @@ from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.symmetry import Form
-from evodesign.posture.terms.base import BodyTerm, Bound, MeasuredBody, Residual, Unknown, both_ways
+from evodesign.posture.terms.base import (
+    Body,
+    BodyTerm,
+    Bound,
+    MeasuredBody,
+    Residual,
+    Row,
+    Unknown,
+    both_ways,
+)
 from evodesign.tree.kinematics import Pose, forward
 from evodesign.tree.model import Joint, JointKind
 
@@ -76,7 +86,8 @@ def _range_bounds(form: Form, ends: Sequence[float], *, at_most: bool) -> Iterat
 
 def joint_ranges(form: Form) -> list[tuple[float, float]]:
     """Limits of each of the form's joints [rad], of those that turn further those of one turn about zero."""
-    bent, known = form.agent.bent_ranges, form.agent.tree.joint_by_name
+    bent = {**form.agent.bent_ranges, **form.agent.chosen_ranges}
+    known = form.agent.tree.joint_by_name
     return [bent.get(name) or _one_turn(known[name]) for name in form.joints]
 
 
@@ -132,4 +143,21 @@ def residuals(body: MeasuredBody) -> Iterator[Residual]:
         yield Residual("moved", float(moved), "m or rad", "the posture that a disturbance leaves as it is")
 
 
-FLOATING_BASE = BodyTerm("floating_base", unknowns=unknowns, residuals=residuals)
+def rows(body: Body) -> Iterator[Row]:
+    """Joints within the limits that a design chooses [rad]."""
+    chosen, group = body.agent.chosen_ranges, LimitGroup.JOINT_LIMITS
+    places = {name: place for place, name in enumerate(body.form.joints) if name in chosen}
+    if not places:
+        return
+    positions = body.values["joints"]
+    joints = [(body.part.joint_by_name[name], positions[place]) for name, place in places.items()]
+    above = ca.vertcat(*[position - joint.lower for joint, position in joints])
+    below = ca.vertcat(*[joint.upper - position for joint, position in joints])
+    for end, column in (("lower", above), ("upper", below)):
+        words = (body.form.words_of(name) for name in places)
+        least = tuple(Bound(f"distance from the {end} limit", 0.0, "rad", False, part=each) for each in words)
+        row = Row(f"{end}_limits", column, 0.0, np.inf, ("joint_limits",), group=group, posture_only=True)
+        yield replace(row, labels=tuple(places), least=least)
+
+
+FLOATING_BASE = BodyTerm("floating_base", unknowns=unknowns, rows=rows, residuals=residuals)

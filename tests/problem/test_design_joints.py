@@ -1,0 +1,162 @@
+"""Joints as design parameters, from a problem file to a search's numbers."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from evodesign.errors import InputError
+from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.gradients import assessed_gradients
+from evodesign.evaluation.sensitivities import Sensitivities
+from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.designs import designs_text, read_designs
+from evodesign.problem.model_json import model_json
+from evodesign.problem.shipped import SHIPPED
+from evodesign.problem.source import source_of
+from evodesign.tree.urdf_read import read_urdf
+from evodesign.tree.urdf_write import urdf_text
+
+HIP = {
+    "name": "hip",
+    "joints": ["l_hip_pitch", "r_hip_pitch"],
+    "offset_m": [-0.02, 0.06],
+    "along": [0.0, 1.0, 0.0],
+    "tilt_deg": [-20.0, 20.0],
+    "about": [0.0, 0.0, 1.0],
+}
+ELBOW = {"name": "elbow", "joints": ["l_elbow", "r_elbow"], "upper_deg": [40.0, 130.0]}
+
+
+def tables(*joints: dict[str, Any]) -> dict[str, Any]:
+    found = tomllib.loads((SHIPPED / "point_grasp.toml").read_text(encoding="utf-8"))
+    found["design"] = {"length": found["design"]["length"][:2], "joint": [*joints]}
+    found["task"]["heights_m"] = [1.0]
+    found["search"].pop("start", None)
+    found["solver"] = {"start_portfolio": False, "compile": False, "method": "ipopt"}
+    return found
+
+
+@pytest.fixture(scope="module")
+def moved() -> DesignProblem:
+    problem = build_problem(source_of(tables(HIP, ELBOW)))
+    return replace(problem, options=replace(problem.options, compiled=False))
+
+
+def test_a_file_has_them_beside_lengths(moved: DesignProblem) -> None:
+    found = {parameter.name: parameter for parameter in moved.space.parameters}
+    assert [*found] == ["length.upper_arm", "length.forearm", "offset.hip", "tilt.hip", "upper.elbow"]
+    assert (found["tilt.hip"].lower, found["tilt.hip"].upper) == pytest.approx(
+        (-0.349066, 0.349066), abs=1e-6
+    )
+    assert found["offset.hip"].record.unit == "m"
+    unscaled = moved.space.unscaled(moved.scene.robot.tree)
+    assert unscaled[2:4] == (0.0, 0.0)
+    assert unscaled[4] == moved.scene.robot.tree.joint_by_name["l_elbow"].upper
+    assert moved.start[0] == moved.space.genome(unscaled), "a search begins with the file's robot"
+    shown = {each["name"]: each for each in model_json(moved)["parameters"]}
+    assert shown["upper.elbow"]["joints"] == ["l_elbow", "r_elbow"]
+
+
+def test_the_unscaled_robot_is_that_of_a_file_without_them(moved: DesignProblem) -> None:
+    tree = moved.scene.robot.tree
+    same = moved.space.resized(tree, moved.space.unscaled(tree))
+    assert urdf_text(same) == urdf_text(tree)
+    bare = build_problem(source_of(tables()))
+    assert urdf_text(bare.scene.robot.tree) == urdf_text(tree)
+
+
+def test_a_written_design_is_read_back(moved: DesignProblem) -> None:
+    values = (1.1, 0.9, 0.03, 0.2, math.radians(100.0))
+    tree = moved.space.resized(moved.scene.robot.tree, values)
+    again = read_urdf(urdf_text(tree), "again", "file")
+    for name in ("l_hip_pitch", "r_hip_pitch", "l_elbow"):
+        written, read = tree.joint_by_name[name], again.joint_by_name[name]
+        assert np.array(read.axis) == pytest.approx(np.array(written.axis), abs=1e-9)
+        assert (read.lower, read.upper) == pytest.approx((written.lower, written.upper))
+
+
+def test_postures_keep_to_the_limits_of_the_design(moved: DesignProblem) -> None:
+    """With elbows that hardly bend the posture is another one, and costs more."""
+    evaluator, unscaled = Evaluator(moved), moved.space.unscaled(moved.scene.robot.tree)
+    norms = []
+    for degrees in (130.0, 40.0):
+        result = evaluator.solve((*unscaled[:4], math.radians(degrees)))
+        (solution,) = result.cases
+        assert solution.solved, solution.reason
+        bent = max(abs(solution.postures["robot"].joints[name]) for name in ("l_elbow", "r_elbow"))
+        assert bent <= math.radians(degrees) + 1e-6
+        norms.append(solution.postures["robot"].torque_norm)
+    assert norms[1] > 1.001 * norms[0]
+
+
+def test_gradients_by_offset_tilt_and_limit_are_those_of_differences(moved: DesignProblem) -> None:
+    evaluator = Evaluator(moved)
+    values = (1.0, 1.0, 0.02, 0.1, math.radians(45.0))
+    result = evaluator.solve(values)
+    (solution,) = result.cases
+    assert solution.solved, solution.reason
+    found = assessed_gradients(
+        moved, Sensitivities(moved, evaluator.known, evaluator.inner), values, result
+    ).values["robot_torque"]
+    formulation = evaluator.inner.postures[solution.case.pair]
+    for place, parameter in enumerate(moved.space.parameters):
+        step, ends = 1e-5, []
+        for sign in (1.0, -1.0):
+            near = tuple(v + sign * step * (p == place) for p, v in enumerate(values))
+            moved_posture = formulation.followed(near, solution)
+            assert moved_posture is not None
+            ends.append(moved_posture.postures["robot"].torque_norm)
+        slope = (ends[0] - ends[1]) / (2.0 * step) * (parameter.upper - parameter.lower)
+        assert found[parameter.name] == pytest.approx(slope, rel=2e-3, abs=2e-3), parameter.name
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "wanted"),
+    [
+        ({**HIP, "joints": ["l_hip_pitch", "no"]}, "design.joint[0].joints[1]", "moving joint"),
+        ({**HIP, "joints": ["l_hip_pitch", "l_hip_pitch"]}, "design.joint[0].joints[1]", "another joint"),
+        ({"name": "a", "joints": ["l_elbow"]}, "design.joint[0]", "offset_m, tilt_deg"),
+        ({**HIP, "offset_m": [0.1, 0.1]}, "design.joint[0].offset_m", "a rising pair"),
+        ({**HIP, "tilt_deg": [-90.0, 0.0]}, "design.joint[0].tilt_deg", "at most 80 degrees"),
+        ({k: v for k, v in HIP.items() if k != "along"}, "design.joint[0].along", "an axis"),
+        ({k: v for k, v in HIP.items() if k != "offset_m"}, "design.joint[0].along", "offset_m with it"),
+        ({**HIP, "along": [0.0, 0.0, 0.0]}, "design.joint[0].offset_m", "an axis of some length"),
+        ({**ELBOW, "upper_deg": [-30.0, 130.0]}, "design.joint[0].upper_deg", "limits between which"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(table: dict[str, Any], key: str, wanted: str) -> None:
+    with pytest.raises(InputError) as error:
+        build_problem(source_of(tables(table)))
+    assert error.value.key == key
+    assert wanted in error.value.wanted
+
+
+def test_two_parameters_for_one_thing_are_refused() -> None:
+    with pytest.raises(InputError, match=r"one parameter for the offset of 'l_hip_pitch'"):
+        build_problem(source_of(tables(HIP, {**HIP, "name": "again"})))
+
+
+def test_one_joint_of_a_pair_is_refused_where_postures_are_symmetric() -> None:
+    found = tables({**HIP, "joints": ["l_hip_pitch"]})
+    found["solver"]["symmetry"] = "on"
+    with pytest.raises(InputError, match="both joints of a pair"):
+        build_problem(source_of(found))
+
+
+def test_the_limit_of_a_knee_that_stays_bent_is_refused() -> None:
+    found = tables({"name": "knee", "joints": ["l_knee", "r_knee"], "lower_deg": [-120.0, -90.0]})
+    found["robot"]["knee_flexion_deg"] = 15.0
+    with pytest.raises(InputError, match="wanted a joint that no least flexion keeps bent"):
+        build_problem(source_of(found))
+
+
+def test_designs_with_joints_are_written_and_read_back(moved: DesignProblem) -> None:
+    tree, values = moved.scene.robot.tree, (1.1, 0.9, -0.0123, 0.1234, 1.7)
+    text = designs_text("some", {"one": values}, moved.space, "a test")
+    assert read_designs(text, "some.toml", moved.space, tree) == {"one": values}
