@@ -23,6 +23,7 @@ from evodesign.body.placement import Scalar
 from evodesign.hardware.actuators import Actuator, actuator_among, actuator_law
 from evodesign.records import Parameter, middle_of
 from evodesign.tree.joint_changes import JointChange
+from evodesign.tree.sections import SectionChange
 
 ROBOT_SHARE, EFFORT_RATIO = "robot_share", "effort_ratio"
 
@@ -65,6 +66,7 @@ class ParameterKind(StrEnum):
     ACTUATOR = "actuator"
     MARGIN = "margin"
     ALLOCATION = "allocation"
+    SECTION = "section"
     OFFSET = "offset"
     TILT = "tilt"
     LOWER = "lower"
@@ -81,6 +83,7 @@ UNITS = {
     ParameterKind.ACTUATOR: "N m",
     ParameterKind.MARGIN: "1",
     ParameterKind.ALLOCATION: "1",
+    ParameterKind.SECTION: "1",
     ParameterKind.OFFSET: "m",
     ParameterKind.TILT: "rad",
     ParameterKind.LOWER: "rad",
@@ -103,6 +106,7 @@ class DesignParameter:
         joints: names of the joints that share an actuator.
         models: of which an actuator must be one, the weakest first; none if the law makes one of any size.
         changes: of joints, that the value makes.
+        sections: of links, whose multiplier the value is.
     """
 
     kind: ParameterKind
@@ -114,6 +118,7 @@ class DesignParameter:
     joints: tuple[str, ...] = ()
     models: tuple[Actuator, ...] = ()
     changes: tuple[JointChange, ...] = ()
+    sections: tuple[SectionChange, ...] = ()
 
     @property
     def choices(self) -> tuple[float, ...]:

@@ -25,6 +25,7 @@ from evodesign.tree.equip import with_actuators, with_walls
 from evodesign.tree.joint_changes import unchanged_value, with_changes
 from evodesign.tree.model import Tree
 from evodesign.tree.resize import Growth, growth_of, resize
+from evodesign.tree.sections import with_sections
 from evodesign.tree.symmetry import mirror_of
 from evodesign.tree.welded import without_frames
 
@@ -171,7 +172,7 @@ class DesignSpace:
         return tuple(self._unscaled_value(parameter, tree) for parameter in self.parameters)
 
     def _unscaled_value(self, parameter: DesignParameter, tree: Tree) -> float:
-        if parameter.kind is ParameterKind.LENGTH:
+        if parameter.kind in (ParameterKind.LENGTH, ParameterKind.SECTION):
             return 1.0
         if parameter.changes:
             return unchanged_value(tree, parameter.changes[0])
@@ -226,9 +227,9 @@ class Family:
             by_kind[parameter.kind].update(dict.fromkeys(parameter.links, value))
         tree = with_walls(self.tree, walls_of_links(self.space.walls, by_kind[ParameterKind.WALL]))
         tree = resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY], self.growths)
-        changes = [
-            (change, value)
-            for parameter, value in zip(self.space.parameters, values, strict=True)
-            for change in parameter.changes
-        ]
+        pairs = [*zip(self.space.parameters, values, strict=True)]
+        sections = [(section, value) for parameter, value in pairs for section in parameter.sections]
+        if sections:
+            tree = with_sections(tree, sections)
+        changes = [(change, value) for parameter, value in pairs for change in parameter.changes]
         return with_changes(tree, changes) if changes else tree

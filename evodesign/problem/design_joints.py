@@ -1,4 +1,4 @@
-"""Joints of a robot as design parameters: where they are, how their axes point, how far they turn."""
+"""Joints and sections of links as design parameters: where and how joints turn, how thick links are."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from evodesign.problem.unknown_names import refuse_unknown
 from evodesign.records import ProblemSource
 from evodesign.tree.joint_changes import JointQuantity, pair_of_changes, widest_ranges
 from evodesign.tree.model import JointKind, Tree
+from evodesign.tree.sections import section_of
 
 DEGREE = math.pi / 180.0
 
@@ -102,6 +103,30 @@ def _refuse_wrong_limit(
         wanted = "limits between which the joint turns in every design"
         found = f"a lower one to {most / DEGREE:g} and an upper one from {least / DEGREE:g} degrees"
         raise InputError(source.path, where, wanted, found)
+
+
+def section_parameters(tables: ProblemFile, source: ProblemSource, tree: Tree) -> list[DesignParameter]:
+    """The parameters of the `[[design.section]]` tables.
+
+    Raises:
+        InputError: a link that has no section, or not along the axis that is named.
+    """
+    found = []
+    for position, table in enumerate(tables.design.section):
+        key = f"design.section[{position}]"
+        for place, link in enumerate(table.links):
+            refuse_unknown(source, f"{key}.links[{place}]", "link", link, tree.link_by_name, tree.name)
+        try:
+            sections = tuple(section_of(tree, link, table.across) for link in table.links)
+        except ModelError as error:
+            where = f"{key}.across" if table.across is not None else f"{key}.links"
+            raise InputError(source.path, where, error.wanted, f"{error.found} ({error.key})") from error
+        found.append(
+            DesignParameter(
+                ParameterKind.SECTION, table.name, table.links, table.lower, table.upper, sections=sections
+            )
+        )
+    return found
 
 
 def joint_ranges_of(

@@ -100,9 +100,10 @@ def refuse_choices(space: DesignSpace, source: ProblemSource) -> None:
         if parameter.kind is ParameterKind.MARGIN:
             wanted = f"rated_torque_n_m of {parameter.group} for the baseline, which sizes nothing"
             raise InputError(source.path, "design.actuator", wanted, "margin")
-        if parameter.changes:
-            wanted = "lengths and densities for the baseline, which moves no joints"
-            raise InputError(source.path, "design.joint", wanted, parameter.name)
+        if parameter.changes or parameter.sections:
+            key = "design.joint" if parameter.changes else "design.section"
+            wanted = "lengths and densities for the baseline, which changes neither joints nor sections"
+            raise InputError(source.path, key, wanted, parameter.name)
         if parameter.choices:
             wanted = (
                 f"bounds of {parameter.name} instead of materials for the baseline, which moves it smoothly"

@@ -22,6 +22,19 @@ class LengthTable(Table, frozen=True):
     upper: Positive
 
 
+class SectionTable(Table, frozen=True):
+    """`[[design.section]]`: a multiplier of links' sections, across the axis along which they get longer.
+
+    `across` names the only axis, in each link's frame, along which they change.
+    """
+
+    name: Name
+    links: Annotated[tuple[Name, ...], Meta(min_length=1)]
+    lower: Positive
+    upper: Positive
+    across: Point | None = None
+
+
 class JointTable(Table, frozen=True):
     """`[[design.joint]]`: a joint, or two that are mirror images; bounds of what changes of them.
 
@@ -166,6 +179,7 @@ class DesignTable(Table, frozen=True):
     """`[design]`: what may change."""
 
     length: tuple[LengthTable, ...] = ()
+    section: tuple[SectionTable, ...] = ()
     joint: tuple[JointTable, ...] = ()
     density: tuple[DensityTable, ...] = ()
     wall: tuple[WallTable, ...] = ()

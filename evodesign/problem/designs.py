@@ -34,6 +34,7 @@ class DesignEntry(Table, frozen=True):
     wall_m: dict[str, Positive] = msgspec.field(default_factory=dict)
     rated_torque_n_m: dict[str, Positive] = msgspec.field(default_factory=dict)
     margin: dict[str, Positive] = msgspec.field(default_factory=dict)
+    section: dict[str, Positive] = msgspec.field(default_factory=dict)
     offset_m: dict[str, float] = msgspec.field(default_factory=dict)
     tilt_rad: dict[str, float] = msgspec.field(default_factory=dict)
     lower_rad: dict[str, float] = msgspec.field(default_factory=dict)
@@ -55,6 +56,7 @@ TABLES = {
     ParameterKind.ACTUATOR: "rated_torque_n_m",
     ParameterKind.MARGIN: "margin",
     ParameterKind.ALLOCATION: "allocation",
+    ParameterKind.SECTION: "section",
     ParameterKind.OFFSET: "offset_m",
     ParameterKind.TILT: "tilt_rad",
     ParameterKind.LOWER: "lower_rad",

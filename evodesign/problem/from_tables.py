@@ -15,7 +15,7 @@ from evodesign.problem.design_hardware import (
     wall_parameters,
     walls_of,
 )
-from evodesign.problem.design_joints import joint_parameters
+from evodesign.problem.design_joints import joint_parameters, section_parameters
 from evodesign.problem.design_space import (
     density_parameters,
 )
@@ -85,6 +85,7 @@ def space_of(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSp
         DesignParameter(ParameterKind.LENGTH, t.name, t.links, t.lower, t.upper) for t in tables.design.length
     ]
     parameters += density_parameters(tables, source)
+    parameters += section_parameters(tables, source, tree)
     joints = joint_parameters(tables, source, tree)
     parameters += wall_parameters(tables, source)
     parameters += actuator_parameters(tables, source, tree)

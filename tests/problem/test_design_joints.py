@@ -160,3 +160,43 @@ def test_designs_with_joints_are_written_and_read_back(moved: DesignProblem) -> 
     tree, values = moved.scene.robot.tree, (1.1, 0.9, -0.0123, 0.1234, 1.7)
     text = designs_text("some", {"one": values}, moved.space, "a test")
     assert read_designs(text, "some.toml", moved.space, tree) == {"one": values}
+
+
+THIGH = {"name": "thigh", "links": ["l_upper_leg", "r_upper_leg"], "lower": 0.7, "upper": 1.4}
+
+
+def test_sections_are_parameters_with_gradients_of_their_own() -> None:
+    """A thicker upper leg is heavier by the square, and torques move with it as solves of neighbours do."""
+    found = tables()
+    found["design"] = {"section": [THIGH]}
+    problem = build_problem(source_of(found))
+    problem = replace(problem, options=replace(problem.options, compiled=False))
+    tree = problem.scene.robot.tree
+    assert [parameter.name for parameter in problem.space.parameters] == ["section.thigh"]
+    assert urdf_text(problem.space.resized(tree, (1.0,))) == urdf_text(tree)
+    thick = problem.space.resized(tree, (1.2,))
+    for name in THIGH["links"]:
+        before, after = (float(each.link_by_name[name].mass) for each in (tree, thick))
+        assert after == pytest.approx(1.44 * before, rel=1e-6)
+    evaluator = Evaluator(problem)
+    result = evaluator.solve((1.1,))
+    (solution,) = result.cases
+    assert solution.solved, solution.reason
+    slopes = assessed_gradients(
+        problem, Sensitivities(problem, evaluator.known, evaluator.inner), (1.1,), result
+    ).values["robot_torque"]
+    formulation, ends = evaluator.inner.postures[solution.case.pair], []
+    for sign in (1.0, -1.0):
+        near = formulation.followed((1.1 + sign * 1e-4,), solution)
+        assert near is not None
+        ends.append(near.postures["robot"].torque_norm)
+    slope = (ends[0] - ends[1]) / 2e-4 * 0.7
+    assert slopes["section.thigh"] == pytest.approx(slope, rel=2e-3, abs=1e-4)
+
+
+def test_a_section_along_one_axis_of_a_cylinder_is_refused() -> None:
+    found = tables()
+    found["design"] = {"section": [{**THIGH, "links": ["l_lower_leg"], "across": [1.0, 0.0, 0.0]}]}
+    with pytest.raises(InputError, match="wanted boxes, for one axis alone") as error:
+        build_problem(source_of(found))
+    assert error.value.key == "design.section[0].across"
