@@ -19,7 +19,9 @@ def found(lower: float, upper: float) -> tuple[float, float]:
     joint = Joint("j", JointKind.REVOLUTE, "a", "b", Placement(), lower=lower, upper=upper)
     form: Any = SimpleNamespace(
         joints=("j",),
-        agent=SimpleNamespace(tree=SimpleNamespace(joint_by_name={"j": joint}), bent_ranges={}),
+        agent=SimpleNamespace(
+            tree=SimpleNamespace(joint_by_name={"j": joint}), bent_ranges={}, chosen_ranges={}
+        ),
     )
     return joint_ranges(form)[0]
 
