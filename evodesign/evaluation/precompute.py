@@ -25,6 +25,7 @@ from evodesign.posture.precompute.plan import (
 )
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
+from evodesign.problem.teams import refuse_lift
 from evodesign.records import Lift
 
 
@@ -49,6 +50,8 @@ def staged_pieces(problem: DesignProblem, lifts: Sequence[Lift] = ()) -> list[li
         problem: to be made ready.
         lifts: beside its own.
     """
+    if lifts:
+        refuse_lift(problem.scene, problem.source)
     return stages(
         precompute_setting(problem),
         problem.holds,

@@ -7,6 +7,7 @@ from itertools import product
 
 from evodesign.errors import InputError
 from evodesign.mechanics.agent import Agent
+from evodesign.mechanics.scene import Scene
 from evodesign.problem.file import ProblemFile
 from evodesign.records import ProblemSource
 from evodesign.searches.base import JOINT_STARTS
@@ -72,6 +73,18 @@ def refuse_what_teams_lack(tables: ProblemFile, source: ProblemSource, team: Seq
     if robots > 1 or people > 1:
         for key in _needing_a_pair(tables):
             raise InputError(source.path, key, "one robot and one person with it", found)
+
+
+def refuse_lift(scene: Scene, source: ProblemSource) -> None:
+    """Refuse a lift that is no robot's and person's.
+
+    Raises:
+        InputError: naming who holds the load.
+    """
+    robots, people = len(scene.robots), len(scene.people)
+    if (robots, people) != (1, 1):
+        found = f"{_counted(robots, 'robot', 'robots')} and {_counted(people, 'person', 'people')}"
+        raise InputError(source.path, "", "one robot and one person, who lift the load", found)
 
 
 def _counted(number: int, one: str, several: str) -> str:

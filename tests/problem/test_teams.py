@@ -22,6 +22,7 @@ from evodesign.evaluation.evaluate import Evaluator, case_outcome
 from evodesign.evaluation.evaluation_json import evaluation_json
 from evodesign.evaluation.factory import cached_precomputed
 from evodesign.evaluation.gradients import assessed_gradients
+from evodesign.evaluation.precompute import staged_pieces
 from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.evaluation.simulations import simulated_holds
 from evodesign.guess.preflight import preflight
@@ -41,6 +42,7 @@ from evodesign.report.replay.layout import layout_text
 from evodesign.report.replay.messages import messages
 from evodesign.report.scene_models import SceneSet
 from evodesign.simulation.feedback import Feedback
+from evodesign.tasks import Lift
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_write import urdf_text
 
@@ -487,3 +489,20 @@ def test_somebody_must_hold_the_load() -> None:
     with pytest.raises(InputError, match=r"wanted a \[robot\] or a \[human\] who holds the load") as error:
         build_problem(source_of(tables))
     assert error.value.key == "robot"
+
+
+@pytest.mark.parametrize(
+    ("name", "found"),
+    [
+        ("table_top", "2 robots and 1 person"),
+        ("two_people", "no robots and 2 people"),
+        ("robot_alone", "1 robot and no people"),
+    ],
+)
+def test_a_lift_of_others_is_refused(name: str, found: str) -> None:
+    problem = build_problem(source_of(shipped(name)))
+    lift = Lift(from_m=0.8, to_m=1.0, seconds=1.5)
+    with pytest.raises(
+        InputError, match=f"wanted one robot and one person, who lift the load, found {found}"
+    ):
+        staged_pieces(problem, [lift])
