@@ -350,7 +350,11 @@ class _OneDesign:
     def _at_ends_of_reach(self, values: Sequence[float], case: Case) -> list[Start]:
         """How robots hold the highest and the lowest load that are asked for, where that is known."""
         reaches = self._solver.inner.reaches.items()
-        own = [reached for (payload, _), reached in reaches if payload == case.payload]
+        own = [
+            reached
+            for (payload, _, people), reached in reaches
+            if payload == case.payload and people in ("", case.person)
+        ]
         found = ([each.extreme_posture(values, sense) for each in own] for sense in (HIGHEST, LOWEST))
         return [
             {name: value for part in parts for name, value in part.items()}

@@ -22,12 +22,13 @@ class InnerProblems:
 
     Args:
         postures: by names of person and load.
-        reaches: by label of the load and name of the robot, or of people who hold it without robots.
+        reaches: by label of the load and name of the robot; of people who hold it without robots also by what
+            they are called together.
         lifts: by names of person and load.
     """
 
     postures: Mapping[tuple[str, str], PostureProblem]
-    reaches: Mapping[tuple[str, str], ReachProblem]
+    reaches: Mapping[tuple[str, str, str], ReachProblem]
     lifts: Mapping[tuple[str, str], LiftProblem]
 
 
@@ -49,11 +50,11 @@ def inner_problems(
             for setting in settings
         },
         reaches={
-            (setting.scene.payload.label, agent.name): ReachProblem(
+            (scene.payload.label, agent.name, "" if scene.robots else scene.pair[0]): ReachProblem(
                 setting, agent.name, symmetric=symmetric, known=known, solvers=solvers
             )
-            for setting in settings
-            for agent in setting.scene.robots or setting.scene.people
+            for scene, setting in zip(scenes, settings, strict=True)
+            for agent in scene.robots or scene.people
         },
         lifts={
             setting.scene.pair: LiftProblem(setting, symmetric=symmetric, timed=timed) for setting in settings

@@ -20,6 +20,7 @@ from evodesign.errors import InputError
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.guess.body_plan import body_plan
 from evodesign.mechanics.agent import SIDES, Agent
+from evodesign.mechanics.scene import Scene
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.file import Facing, ProblemFile
 from evodesign.problem.source import decode_toml
@@ -94,6 +95,8 @@ def _stands(robot: Agent, welded: WeldedTree) -> str:
     up = float(center[2] - middle[2]) / max(math.dist(center, middle), 1e-9)
     if up < UPRIGHT:
         wanted = "a robot upright on its soles while all joints are at zero, z up in its root link"
+        if not robot.on_feet:
+            wanted = "a frame on the ground below the robot, z up in it and in the root link"
         found = f"its centre of mass {math.degrees(math.acos(max(-1.0, up))):.0f} degrees off the vertical"
         raise InputError(key, "", wanted, found)
     for foot, place in zip(robot.feet, places, strict=True):
@@ -209,11 +212,14 @@ def _holds(problem: DesignProblem) -> str:
     scene, bare = problem.scene, problem.scene.designed_tree
     for robot in scene.designed[:1]:
         bare = without_frames(bare, (*(contact.frame for contact in robot.contacts), *robot.trunk))
-    free = (replace(each, collisions=None) for each in scene.agents)
-    agents = (replace(each, tree=bare) if each.designed else each for each in free)
+
+    def freed(scene: Scene) -> Scene:
+        free = (replace(each, collisions=None) for each in scene.agents)
+        return scene.with_agents(*(replace(each, tree=bare) if each.designed else each for each in free))
+
     alone = replace(
         problem,
-        scenes=(scene.with_agents(*agents),),
+        scenes=tuple(map(freed, problem.scenes[:1] if scene.robots else problem.scenes)),
         options=options,
         start_portfolio=False,
         whole_reach=True,
@@ -221,17 +227,19 @@ def _holds(problem: DesignProblem) -> str:
     unscaled = problem.space.unscaled(scene.designed_tree)
     middle = problem.holds[len(problem.holds) // 2]
     result = Evaluator(replace(alone, tasks=(middle,))).solve(unscaled)
-    (case,), reach = result.cases, result.reach
+    case, reach = result.cases[0], result.reach
     if reach.lowest is None or reach.highest is None:
-        wanted = "hands that can hold the load in front of the robot at some height"
-        raise InputError("robot.hands", "", wanted, f"none ({reach.reason})")
+        key, who = ("robot.hands", "the robot") if scene.robots else ("payload", "people")
+        wanted = f"hands that can hold the load in front of {who} at some height"
+        raise InputError(key, "", wanted, f"none ({reach.reason})")
     within = tuple(task for task in problem.holds if reach.beyond(task.heights) == 0.0)
     beyond = ", ".join(f"{task.height_m:g}" for task in problem.holds if task not in within)
     found = f"from {reach.lowest:.2f} to {reach.highest:.2f} m"
     if not within:
-        raise InputError("task.heights_m", "", f"a height that the robot reaches, {found}", beyond)
+        who = "the robot reaches" if scene.robots else "everyone reaches"
+        raise InputError("task.heights_m", "", f"a height that {who}, {found}", beyond)
     if middle not in within:
-        (case,) = Evaluator(replace(alone, tasks=within[:1])).solve(unscaled).cases
+        case = Evaluator(replace(alone, tasks=within[:1])).solve(unscaled).cases[0]
     if not case.solved:
         wanted = f"a posture with the load at {case.case.task}"
         raise InputError("task.heights_m", "", wanted, f"{case.status}: {case.reason}")

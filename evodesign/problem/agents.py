@@ -214,6 +214,10 @@ def _of_table(key: str, table: HumanTable, source: ProblemSource) -> Agent:
 
 
 def _generated(key: str, table: HumanTable, source: ProblemSource) -> Agent:
+    for part in ("hands", "soles"):
+        if getattr(table, part) is not None:
+            wanted = "this key with urdf; a generated person has hands and soles of its own"
+            raise InputError(source.path, f"{key}.{part}", wanted, "frames")
     figures = {"stature_m": table.stature_m, "mass_kg": table.mass_kg, "sex": table.sex}
     if table.stature_m is None or table.mass_kg is None or table.sex is None:
         missing = next(figure for figure, value in figures.items() if value is None)

@@ -10,17 +10,21 @@ from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError, ModelError
 from evodesign.mechanics.agent import Agent
 from evodesign.problem.design_table import JointTable
-from evodesign.problem.file import ProblemFile
+from evodesign.problem.file import ProblemFile, RobotTable
 from evodesign.problem.unknown_names import refuse_unknown
 from evodesign.records import ProblemSource
 from evodesign.tree.joint_changes import JointQuantity, pair_of_changes, widest_ranges
 from evodesign.tree.model import JointKind, Tree
 from evodesign.tree.sections import section_of
+from evodesign.tree.symmetry import mirror_of
 
 DEGREE = math.pi / 180.0
 
-LARGEST_TILT = 80.0
-"""By how many degrees an axis may turn to either side."""
+LARGEST_TILT, LARGEST_LIMIT = 80.0, 360.0
+"""By how many degrees an axis may turn to either side, and how far a joint."""
+
+LARGEST_OFFSET = 0.5
+"""By how many metres a joint may move to either side."""
 
 AXES = {JointQuantity.OFFSET: "along", JointQuantity.TILT: "about"}
 
@@ -42,6 +46,8 @@ def joint_parameters(tables: ProblemFile, source: ProblemSource, tree: Tree) -> 
             refuse_unknown(source, f"{key}.joints[{place}]", "moving joint", joint, tree.actuated, tree.name)
             if joint in table.joints[:place]:
                 raise InputError(source.path, f"{key}.joints[{place}]", "another joint", f"'{joint}' twice")
+        _refuse_no_pair(table, f"{key}.joints[1]", source, tree)
+        _refuse_still(table, key, source, tables.designed)
         own = [*_of_table(table, key, source, tree)]
         if not own:
             wanted = "offset_m, tilt_deg, lower_deg or upper_deg"
@@ -74,8 +80,10 @@ def _of_table(table: JointTable, key: str, source: ProblemSource, tree: Tree) ->
         where = f"{key}.{name}"
         if bounds[0] >= bounds[1]:
             raise InputError(source.path, where, "a rising pair", f"[{bounds[0]:g}, {bounds[1]:g}]")
-        if quantity is JointQuantity.TILT and max(map(abs, bounds)) > LARGEST_TILT:
-            wanted = f"at most {LARGEST_TILT:g} degrees to either side"
+        largest = {JointQuantity.TILT: LARGEST_TILT, JointQuantity.OFFSET: LARGEST_OFFSET}
+        most, word = largest.get(quantity, LARGEST_LIMIT), "m" if name.endswith("_m") else "degrees"
+        if max(map(abs, bounds)) > most:
+            wanted = f"at most {most:g} {word} to either side"
             raise InputError(source.path, where, wanted, f"[{bounds[0]:g}, {bounds[1]:g}]")
         _refuse_wrong_limit(table, quantity, where, source, tree)
         try:
@@ -84,6 +92,29 @@ def _of_table(table: JointTable, key: str, source: ProblemSource, tree: Tree) ->
             raise InputError(source.path, where, error.wanted, error.found) from error
         lower, upper = (unit * bound for bound in bounds)
         yield DesignParameter(ParameterKind(quantity.value), table.name, (), lower, upper, changes=changes)
+
+
+def _refuse_no_pair(table: JointTable, key: str, source: ProblemSource, tree: Tree) -> None:
+    """Refuse two joints of a symmetric robot that are not each other's mirror images."""
+    try:
+        partners = mirror_of(tree).joints
+    except ModelError:
+        return
+    for first, other in zip(table.joints[:1], table.joints[1:], strict=False):
+        if partners[first] != other:
+            wanted = f"the mirror image of '{first}', '{partners[first]}'"
+            raise InputError(source.path, key, wanted, f"'{other}'")
+
+
+def _refuse_still(table: JointTable, key: str, source: ProblemSource, robot: RobotTable | None) -> None:
+    """Refuse limits of joints that stand at zero in all postures."""
+    moving = () if robot is None else robot.joints
+    if table.lower_deg is None and table.upper_deg is None:
+        return
+    for place, joint in enumerate(table.joints):
+        if moving and joint not in moving:
+            wanted = "a joint that moves in postures, as its limits are asked for"
+            raise InputError(source.path, f"{key}.joints[{place}]", wanted, f"'{joint}'")
 
 
 def _refuse_wrong_limit(

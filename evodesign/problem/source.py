@@ -12,6 +12,7 @@ import os
 import re
 import tomllib
 from collections.abc import Iterator, Mapping
+from enum import StrEnum
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
@@ -260,10 +261,30 @@ def _explained(error: msgspec.ValidationError, raw: Any, source: str, table: typ
         where = f"{key}.{missing.group(1)}" if key else missing.group(1)
         return InputError(source, where, "this key", "nothing")
     wanted = re.sub(r", got .*", "", message.removeprefix("Expected ")).replace("`", "")
-    wanted = wanted.replace("Invalid enum value", "another word than").replace(
-        "str of length", "text of length"
-    )
+    wanted = wanted.replace("str of length", "text of length")
+    if wanted.startswith("Invalid enum value"):
+        words = _words_at(table, key)
+        known = f"one of {', '.join(words)}" if words else "another word than"
+        wanted = known if words else wanted.replace("Invalid enum value", known)
     return InputError(source, key, wanted, shortened(repr(_at(raw, key))))
+
+
+def _words_at(table: type[msgspec.Struct], key: str) -> list[str]:
+    """The words that may stand at a key; none where any may."""
+    kind: Any = table
+    for name in re.findall(r"[^.\[\]]+(?![^\[]*\])", key):
+        struct = _struct_in(kind)
+        if struct is None or name not in _fields(struct):
+            return []
+        kind = _fields(struct)[name]
+    return [*map(str, _enum_in(kind) or ())]
+
+
+def _enum_in(kind: Any) -> type[StrEnum] | None:
+    """The words inside an annotation such as `X | None` or `tuple[X, ...]`."""
+    if isinstance(kind, type) and issubclass(kind, StrEnum):
+        return kind
+    return next((found for part in get_args(kind) if (found := _enum_in(part))), None)
 
 
 FREE = "[...]"

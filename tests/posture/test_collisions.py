@@ -289,7 +289,7 @@ def test_the_posture_at_the_end_of_reach_fits_programs_that_part_other_bodies(
     known = replace(Evaluator(apart).known, meetings={**met, ("robot", ""): met["robot", ""][:-1]})
     evaluator = Evaluator(apart, known)
     values = apart.space.unscaled(apart.scene.robot.tree)
-    reach, postures = evaluator.inner.reaches["", ROBOT], evaluator.inner.postures[apart.scene.pair]
+    reach, postures = evaluator.inner.reaches["", ROBOT, ""], evaluator.inner.postures[apart.scene.pair]
     (start,) = reach.extreme_posture(values, LOWEST)
     assert reach.extreme(values, LOWEST)[1].values.keys() - start.keys() > {HEIGHT}, "how bodies are parted"
     solved = postures.landscape(apart.tasks[0]).solve(tuple(values), start)

@@ -506,3 +506,36 @@ def test_a_lift_of_others_is_refused(name: str, found: str) -> None:
         InputError, match=f"wanted one robot and one person, who lift the load, found {found}"
     ):
         staged_pieces(problem, [lift])
+
+
+def test_the_reach_of_people_who_take_turns_is_that_of_all_whatever_their_order() -> None:
+    sizes = [person("-x", name="tall", stature_m=1.9), person("-x", name="short", stature_m=1.5)]
+    found = []
+    for people in (sizes, sizes[::-1]):
+        problem = built(shipped("two_people", human=[*people, person("+x", name="other")]))
+        evaluator = Evaluator(replace(problem, tasks=problem.tasks[:1]))
+        reaches = [reach.solve(()) for reach in evaluator.inner.reaches.values()]
+        assert len(reaches) == 4
+        found.append(evaluator.solve(()).reach.highest)
+        assert found[-1] == min(reach.highest for reach in reaches if reach.highest is not None)
+    assert found[0] == pytest.approx(found[1], abs=1e-6)
+
+
+@pytest.mark.parametrize(("table", "key"), [("robot", "robot.sides[0]"), ("human", "human.side")])
+def test_another_word_than_a_side_is_refused_with_those_that_there_are(table: str, key: str) -> None:
+    tables = shipped("table_top")
+    tables["human"] = tables["human"][0]
+    if table == "robot":
+        tables["robot"]["sides"] = ["x"]
+    else:
+        tables["human"]["side"] = "left"
+    with pytest.raises(InputError, match=r"wanted one of -x, -y, \+x, \+y, found") as error:
+        build_problem(source_of(tables))
+    assert error.value.key == key
+
+
+def test_hands_of_a_generated_person_are_refused() -> None:
+    tables = shipped("two_people", human=person("+x", hands={"right": "RightHand"}))
+    with pytest.raises(InputError, match="a generated person has hands and soles of its own") as error:
+        build_problem(source_of(tables))
+    assert error.value.key == "human.hands"
