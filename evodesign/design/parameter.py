@@ -73,9 +73,6 @@ class ParameterKind(StrEnum):
     UPPER = "upper"
 
 
-OF_JOINTS = frozenset({ParameterKind.OFFSET, ParameterKind.TILT, ParameterKind.LOWER, ParameterKind.UPPER})
-"""Parameters that say where joints are, how their axes point and how far they turn."""
-
 UNITS = {
     ParameterKind.LENGTH: "1",
     ParameterKind.DENSITY: "kg/m^3",

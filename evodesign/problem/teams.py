@@ -56,7 +56,7 @@ def refuse_what_teams_lack(tables: ProblemFile, source: ProblemSource, team: Seq
     """
     robots = sum(len(table.sides) for table in tables.robots.values())
     people = len(team) - robots
-    found = f"{_counted(robots, 'robot', 'robots')} and {_counted(people, 'person', 'people')}"
+    found = _who(robots, people)
     for key in () if robots else _needing_robots(tables):
         raise InputError(source.path, key, "a [robot] with it", found)
     if not people:
@@ -83,8 +83,11 @@ def refuse_lift(scene: Scene, source: ProblemSource) -> None:
     """
     robots, people = len(scene.robots), len(scene.people)
     if (robots, people) != (1, 1):
-        found = f"{_counted(robots, 'robot', 'robots')} and {_counted(people, 'person', 'people')}"
-        raise InputError(source.path, "", "one robot and one person, who lift the load", found)
+        raise InputError(source.path, "", "one robot and one person, who lift the load", _who(robots, people))
+
+
+def _who(robots: int, people: int) -> str:
+    return f"{_counted(robots, 'robot', 'robots')} and {_counted(people, 'person', 'people')}"
 
 
 def _counted(number: int, one: str, several: str) -> str:

@@ -89,8 +89,7 @@ def with_sections(tree: Tree, changes: Iterable[tuple[SectionChange, Scalar]]) -
 def _perpendicular(along: Vector) -> tuple[Vector, Vector]:
     """Two unit vectors across one of numbers, and across each other."""
     least = min(range(3), key=lambda place: abs(along[place]))
-    other: Vector = tuple(float(place == least) for place in range(3))  # type: ignore[assignment]
-    first = _cross(along, other)
+    first = _cross(along, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))[least])
     first = scale(1.0 / math.sqrt(dot(first, first)), first)
     return first, _cross(along, first)
 
