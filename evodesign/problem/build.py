@@ -23,7 +23,7 @@ from evodesign.problem.agents import (
 from evodesign.problem.collisions import with_collisions
 from evodesign.problem.constraints import constraints_of, refuse_constraints, with_bodies_apart
 from evodesign.problem.descriptors import LOWEST_REACH, search_descriptors
-from evodesign.problem.design_joints import joint_ranges_of
+from evodesign.problem.design_geometry import joint_ranges_of
 from evodesign.problem.design_space import (
     check_allocations,
     effort_weights,

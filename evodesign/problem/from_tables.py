@@ -10,12 +10,12 @@ from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.contact import Ground
 from evodesign.mechanics.scene import Scene
 from evodesign.pool.base import Limits
+from evodesign.problem.design_geometry import joint_parameters, section_parameters
 from evodesign.problem.design_hardware import (
     actuator_parameters,
     wall_parameters,
     walls_of,
 )
-from evodesign.problem.design_joints import joint_parameters, section_parameters
 from evodesign.problem.design_space import (
     density_parameters,
 )
