@@ -17,6 +17,7 @@ docs/people.md says what the figures mean.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -133,6 +134,17 @@ def _scores(person: Agent, posture: AgentDetail, load: float) -> tuple[Score | N
     found = [[score(arm, body, held) for arm in arms] for score in (rula, reba)]
     worse = [max(scores, key=lambda each: (each.whole, each.arm)) for scores in found]
     return worse[0], worse[1]
+
+
+def of_most_loaded_back(people: Iterable[Agent], postures: Mapping[str, AgentDetail]) -> Ergonomics:
+    """What postures ask of the one of several people whose back bears most.
+
+    Args:
+        people: one at least.
+        postures: of everybody, by name.
+    """
+    every = (ergonomics(person, postures[person.name]) for person in people)
+    return max(every, key=lambda one: 0.0 if one.back is None else one.back.compression)
 
 
 def ergonomics_json(asked: Ergonomics) -> dict[str, Any]:

@@ -121,7 +121,7 @@ class OpenedDesign:
         """
         if not self.cases:
             return ()
-        from evodesign.quantities.ergonomics import ergonomics  # CasADi takes its time to load
+        from evodesign.quantities.ergonomics import of_most_loaded_back  # CasADi takes its time to load
 
         people = self.rebuilt.people
         if not people:
@@ -135,13 +135,7 @@ class OpenedDesign:
         hardest = [detail.hardest for detail in self.cases]
         if any(person.name not in each.agents for each in hardest for person in people[each.case.person]):
             raise RunError(f"{self.run.directory}: its problem has people, and a posture is of nobody")
-        return tuple(
-            max(
-                (ergonomics(person, each.agents[person.name]) for person in people[each.case.person]),
-                key=lambda one: 0.0 if one.back is None else one.back.compression,
-            )
-            for each in hardest
-        )
+        return tuple(of_most_loaded_back(people[each.case.person], each.agents) for each in hardest)
 
 
 def open_design(run: RunLog, number: int, jobs: int, progress: PrecomputeProgress) -> OpenedDesign:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from evodesign.human.back import ACTION_LIMIT
 from evodesign.mechanics.scene import Scene, scene_of
-from evodesign.quantities.ergonomics import ergonomics
+from evodesign.quantities.ergonomics import of_most_loaded_back
 from evodesign.records import CaseDetail
 from evodesign.report.page.content import EffortContent
 
@@ -25,9 +25,7 @@ def effort_content(scenes: Sequence[Scene], cases: Sequence[CaseDetail]) -> tupl
 
 def _of(scenes: Sequence[Scene], case: CaseDetail) -> EffortContent:
     """Newtons as whole numbers, and what is not known as null."""
-    people, hardest = scene_of(scenes, case.case.pair).people, case.hardest.agents
-    every = [ergonomics(person, hardest[person.name]) for person in people]
-    asked = max(every, key=lambda one: 0.0 if one.back is None else one.back.compression)
+    asked = of_most_loaded_back(scene_of(scenes, case.case.pair).people, case.hardest.agents)
     back, tires = asked.back, asked.endurance
     return EffortContent(
         back_n=None if back is None else round(back.compression),
