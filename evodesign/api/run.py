@@ -1,6 +1,8 @@
 """A run in a notebook: its front, its evaluations as a table, its designs and postures.
 
 Reading a run loads no solver; only postures that the log does not hold are solved anew.
+
+Beyond 300 lines: a user's methods with their docstrings; each calls another module.
 """
 
 from __future__ import annotations

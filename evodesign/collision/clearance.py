@@ -4,6 +4,8 @@ A distance is negative where two solids overlap: minus how deep they are in each
 coal in the order of their bounding balls' distances, for as long as a nearer one may follow. A mesh is
 its convex hull, and where hulls are in each other its triangles (`collision.triangles`).
 
+Beyond 300 lines: distances of hulls and of triangles share placed solids and their order.
+
 Source: coal (formerly hpp-fcl): Gilbert, Johnson and Keerthi (1988), and expanding polytopes.
 """
 

@@ -10,6 +10,8 @@ variables too. The mean, the largest value or a quantile over cases is that of t
 actuator changes of the formula itself (its motor constant, its limit) is differenced at the same torques.
 Reach has its own tangent. What depends on the robot's bodies alone is differenced along the resized robot.
 Everything else goes along the whole tangent, as in `sensitivities`, which takes many times as long.
+
+Beyond 300 lines: a rule of differentiation for each kind of quantity, all over the same tangents.
 """
 
 from __future__ import annotations

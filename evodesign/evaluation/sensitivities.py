@@ -12,6 +12,8 @@ nothing beyond its function to have a gradient.
 What an objective depends on shows when it is taken away: an objective that does not exist without a case's
 posture gets that case's notes. A solution is one of several local optima, held by some of its limits. Its
 derivative holds as long as the same optimum wins and the same limits hold; the notes say how far that is.
+
+Beyond 300 lines: the sentences on why nothing is smooth belong to the derivatives that they replace.
 """
 
 from __future__ import annotations

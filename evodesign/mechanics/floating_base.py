@@ -5,6 +5,8 @@ rad/s], then the speeds of the moving joints, here in the order that the caller 
 
 Nothing of the CasADi graph is used: pinocchio is given placements, axes and inertias, and does the rest.
 
+Beyond 300 lines: a tree's model and its states have the same order of joints.
+
 Source: Sartore et al. 2022, Eq. 5; pinocchio `crba`, `nonLinearEffects`, `getFrameJacobian`.
 """
 

@@ -1,4 +1,7 @@
-"""The program of a lift: splines and wrenches over K knots, for any design and any heights and times."""
+"""The program of a lift: splines and wrenches over K knots, for any design and any heights and times.
+
+Beyond 300 lines: the program, its starts and the motions read from it share the order of the variables.
+"""
 
 from __future__ import annotations
 

@@ -4,6 +4,8 @@ Solves begin at the robot's hold at either end, followed along the lift with the
 whose motions were found once for the problem (`lift_starts`); so a result depends on problem and design
 alone. The cheapest one counts. Holds of several heights joined together do not do for a start: their elbows
 bend in different ways.
+
+Beyond 300 lines: the steps from holds to a checked lift stand in the order in which they happen.
 """
 
 from __future__ import annotations

@@ -6,6 +6,8 @@ Newton's method on it reaches rounding accuracy; and the implicit function theor
 (`optimality`). Every active inequality must have a multiplier of the right sign and every other one must hold
 (strict complementarity). Where a condition fails the derivative does not exist, and a sentence says so.
 
+Beyond 300 lines: finding again, the active set and its refinement are one algorithm.
+
 Source: Fiacco, Introduction to Sensitivity and Stability Analysis in Nonlinear Programming (1983), Theorem
 3.2.2; Nocedal and Wright, Numerical Optimization, ch. 12.
 """

@@ -7,6 +7,8 @@ come back.
 
 Every thread of a Dask worker keeps a worker process of its own for the evaluations. So whatever an evaluation
 does, the Dask worker lives on and reports the reason. Its processes end with it.
+
+Beyond 300 lines: losses of workers, of schedulers and stops meet in one loop.
 """
 
 from __future__ import annotations

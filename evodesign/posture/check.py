@@ -3,6 +3,8 @@
 Nothing of the solver's graph is used. The agents' trees go into pinocchio, which gives kinematics, gravity
 torques and Jacobians; from them every term (`posture.terms`) computes its residuals anew.
 
+Beyond 300 lines: what checks a posture is read as a whole by whoever doubts the solver.
+
 Source: Sartore et al. 2022, Eq. 5 at rest; pinocchio `nonLinearEffects` at rest.
 """
 

@@ -1,6 +1,8 @@
 """Robot and people of a problem file: frames and joints resolved, populations unfolded, strengths.
 
 A population's table stands for one person per sex and percentile.
+
+Beyond 300 lines: one function for each table of an agent.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""From a problem's text to a problem: every name resolved, every number checked."""
+"""From a problem's text to a problem: every name resolved, every number checked.
+
+Beyond 300 lines: a problem's record and the function that fills it.
+"""
 
 from __future__ import annotations
 

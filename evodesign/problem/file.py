@@ -2,6 +2,8 @@
 
 Every key carries its unit. Decoding is strict: unknown keys, wrong types and values out of range are errors
 that name file, key, what was wanted and what was found.
+
+Beyond 300 lines: the file's tables, one after the other, with no function.
 """
 
 from __future__ import annotations

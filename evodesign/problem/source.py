@@ -1,6 +1,8 @@
 """Reading a problem and the files that it names: as text, and strictly decoded into tables.
 
 Errors name file, key, what was wanted and what was found, so that a user can act on them.
+
+Beyond 300 lines: one function for each thing that can be wrong with a text.
 """
 
 from __future__ import annotations

@@ -12,6 +12,8 @@ the design; the problem file then knows its name. Without touching the package, 
 `ObjectiveKind` in a module of its own, which every process imports, and its name is `MODULE:NAME` (see
 `outside`). What does
 not exist (no posture, no reach) is absent, never large.
+
+Beyond 300 lines: the list of objectives, a few lines each.
 """
 
 from __future__ import annotations

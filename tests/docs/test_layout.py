@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from itertools import pairwise
 from pathlib import Path
@@ -30,3 +31,15 @@ def test_neighbouring_floors_have_no_modules_of_one_name(repository: Path) -> No
     ]
     shared = [upper & lower - {"__init__.py"} for upper, lower in pairwise(modules)]
     assert [names for names in shared if names] == []
+
+
+def test_modules_past_300_lines_say_why(repository: Path) -> None:
+    texts = {path: path.read_text(encoding="utf-8") for path in (repository / "evodesign").rglob("*.py")}
+    long = {path for path, text in texts.items() if len(text.splitlines()) > 300}
+    why = {
+        path
+        for path, text in texts.items()
+        if "Beyond 300 lines: " in (ast.get_docstring(ast.parse(text)) or "")
+    }
+    assert sorted(long - why) == []
+    assert len(texts) > len(long) > 0

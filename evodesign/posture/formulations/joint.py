@@ -5,6 +5,8 @@
 
 for any design (a parameter of one program built once).
 
+Beyond 300 lines: the steps from starts to an accepted posture stand in the order in which they happen.
+
 Source: Sartore et al. 2022, Eq. 14 with pi fixed.
 """
 

@@ -10,6 +10,8 @@ way, and the best of dozens of optima, which no task needs, is hardly ever found
 several optima (arms forward, arms raised sideways over the head), so it begins at a portfolio of starts
 as a posture does.
 
+Beyond 300 lines: robot's, person's and shared reach are one program with different agents.
+
 Source: feasibility constraints of Sartore et al. 2022, Eq. 14.
 """
 

@@ -7,6 +7,8 @@ speaks of one agent with a body (`Body`, `MeasuredBody`), or of robot, person an
 load case: the undisturbed one, and one for each disturbance.
 
 A new term is a file with a `Term` in it, and a line in `terms/registry.py`.
+
+Beyond 300 lines: a list of what terms are given and what they return, mostly docstrings.
 """
 
 from __future__ import annotations

@@ -2,6 +2,8 @@
 
 Numbers are the log's; those of designs that can be opened have seven significant digits. A number that
 does not exist is None.
+
+Beyond 300 lines: the page's data, one record after the other, with no function.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""From a run's log to what stands in its page."""
+"""From a run's log to what stands in its page.
+
+Beyond 300 lines: one function for each part of the page's data.
+"""
 
 from __future__ import annotations
 
