@@ -48,6 +48,9 @@ LEAST_RATIO = 12.0
 DENSITY = 3000.0
 """Mass over volume of an actuator [kg/m^3]: RS04, 1.42 kg in a cylinder of 110 mm by 50 mm."""
 
+SLENDERNESS = 50.0 / 110.0
+"""Length over diameter of a housing whose maker does not give them: that of RS04."""
+
 ARC_MINUTE = math.pi / (180.0 * 60.0)
 
 Figure = Annotated[float, Meta(gt=0.0)]
@@ -68,6 +71,7 @@ class Actuator:
         model: its name in the catalogue; empty for one of the law.
         holds: whether a posture in which more than the rated torque is asked for is none.
         price: [EUR]; None where it is not known.
+        housing: diameter and length of the cylinder around it [m]; None where they follow from the mass.
     """
 
     rated: Scalar
@@ -80,6 +84,15 @@ class Actuator:
     model: str = ""
     holds: bool = True
     price: float | None = None
+    housing: tuple[Scalar, Scalar] | None = None
+
+    @property
+    def size(self) -> tuple[Scalar, Scalar]:
+        """Diameter and length of its housing [m]: those given, or those of its mass."""
+        if self.housing is not None:
+            return self.housing
+        diameter = (self.mass * (4.0 / (math.pi * DENSITY * SLENDERNESS))) ** (1.0 / 3.0)
+        return diameter, SLENDERNESS * diameter
 
     def loss(self, torque: Scalar) -> Scalar:
         """Copper loss [W] that holding a torque [N m] takes."""
@@ -104,6 +117,14 @@ class CatalogueRow(Record, frozen=True, kw_only=True):
     rotor_inertia_kg_cm2: Figure | None = None
     no_load_speed_rpm: Figure | None = None
     price_eur: Figure | None = None
+    diameter_m: Figure | None = None
+    length_m: Figure | None = None
+
+    @property
+    def housing(self) -> tuple[float, float] | None:
+        """Diameter and length [m]."""
+        given = self.diameter_m, self.length_m
+        return None if given[0] is None or given[1] is None else (given[0], given[1])
 
     @property
     def motor_constant(self) -> float | None:
@@ -270,6 +291,7 @@ def actuator_of_row(row: CatalogueRow, law: ActuatorLaw | None = None) -> Actuat
         "motor_constant": row.motor_constant,
         "inertia": row.reflected_inertia,
         "speed": row.speed,
+        "housing": row.housing,
     }
     known: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     return replace(law.at(rated), model=row.model, price=row.price_eur, **known)
@@ -286,13 +308,14 @@ def actuator_among(models: Sequence[Actuator], rated: Scalar) -> Actuator:
         return min(models, key=lambda model: abs(model.rated - rated))
     above = [rated > (one.rated + other.rated) / 2.0 for one, other in pairwise(models)]
 
-    def figure(name: str) -> Scalar:
-        values = [getattr(model, name) for model in models]
+    def figure_of(values: Sequence[Scalar]) -> Scalar:
         steps = (other - one for one, other in pairwise(values))
         return values[0] + sum(is_above * step for is_above, step in zip(above, steps, strict=True))
 
     names = ("peak", "mass", "motor_constant", "inertia", "stiffness", "speed")
-    return replace(models[0], rated=rated, model="", price=None, **{name: figure(name) for name in names})
+    housing = figure_of([model.size[0] for model in models]), figure_of([model.size[1] for model in models])
+    figures = {name: figure_of([getattr(model, name) for model in models]) for name in names}
+    return replace(models[0], rated=rated, model="", price=None, housing=housing, **figures)
 
 
 def mounted_solid(actuator: Actuator, link_from_joint: Placement) -> Solid:
