@@ -28,6 +28,10 @@ BODIES_APART = "bodies_apart"
 """By how much bodies that some design's build brings together are farther apart than asked [m], and the
 constraint that this is positive, which every problem has where bodies keep clear of each other."""
 
+PARTS_APART = "parts_apart"
+"""How much room the parts of a robot have that have least, or minus what all lack [m], and the constraint
+that this is positive, which every problem has where actuators are bodies (`collision.parts`)."""
+
 WHOLE_BOUND = 1.0
 """Relative excess of a quantity that does not exist because a height is missed, or no posture was sought."""
 

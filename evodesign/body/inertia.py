@@ -47,7 +47,8 @@ class Inertia:
     def moved(self, outer_from_inner: Placement) -> Inertia:
         """The same body described in the outer frame."""
         rotation = outer_from_inner.rotation
-        if rotation == IDENTITY:
+        numbers = all(isinstance(entry, float | int) for row in rotation for entry in row)
+        if numbers and rotation == IDENTITY:
             return Inertia(self.mass, outer_from_inner.apply(self.center), self.about_center)
         turned = multiply(multiply(rotation, self.about_center), transpose(rotation))
         return Inertia(self.mass, outer_from_inner.apply(self.center), turned)

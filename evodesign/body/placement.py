@@ -86,6 +86,11 @@ def dot(a: Vector, b: Vector) -> Scalar:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
+def cross(a: Vector, b: Vector) -> Vector:
+    """The cross product."""
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
 def rotate(matrix: Matrix, a: Vector) -> Vector:
     """Product of a 3 x 3 matrix and a vector."""
     return (dot(matrix[0], a), dot(matrix[1], a), dot(matrix[2], a))

@@ -55,18 +55,19 @@ class ConvexSolid:
 def solids_of(link: Link) -> tuple[ConvexSolid, ...]:
     """The solids of a link of numbers; none for a bare frame."""
     if link.solids:
-        return tuple(_of_shape(solid.shape, solid.link_from_solid) for solid in link.solids)
+        return tuple(solid_of(solid.shape, solid.link_from_solid) for solid in link.solids)
     if link.shown:
         return tuple(_of_mesh(mesh, mesh.surface) for mesh in link.shown if mesh.surface is not None)
-    return tuple(_of_shape(look.shape, look.link_from_look) for look in link.looks)
+    return tuple(solid_of(look.shape, look.link_from_look) for look in link.looks)
 
 
 def box_solid(shape: Box) -> ConvexSolid:
     """A box about the origin."""
-    return _of_shape(shape, Placement())
+    return solid_of(shape, Placement())
 
 
-def _of_shape(shape: Shape, place: Placement) -> ConvexSolid:
+def solid_of(shape: Shape, place: Placement) -> ConvexSolid:
+    """A shape of numbers at its place in a link."""
     rotation, position = np.array(place.rotation, float), np.array(place.translation, float)
     if isinstance(shape, Sphere):
         geometry, radius = coal.Sphere(float(shape.radius)), float(shape.radius)

@@ -20,7 +20,7 @@ from enum import StrEnum
 
 from evodesign.body.material import Material
 from evodesign.body.placement import Scalar
-from evodesign.hardware.actuators import Actuator, actuator_among, actuator_law
+from evodesign.hardware.actuators import Actuator, Mounting, actuator_among, actuator_law
 from evodesign.records import Parameter, middle_of
 from evodesign.tree.joint_changes import JointChange
 from evodesign.tree.sections import SectionChange
@@ -104,6 +104,7 @@ class DesignParameter:
         models: of which an actuator must be one, the weakest first; none if the law makes one of any size.
         changes: of joints, that the value makes.
         sections: of links, whose multiplier the value is.
+        mountings: of the actuator at each of its joints; none where it is a ball.
     """
 
     kind: ParameterKind
@@ -116,6 +117,7 @@ class DesignParameter:
     models: tuple[Actuator, ...] = ()
     changes: tuple[JointChange, ...] = ()
     sections: tuple[SectionChange, ...] = ()
+    mountings: tuple[Mounting, ...] = ()
 
     @property
     def choices(self) -> tuple[float, ...]:
@@ -176,3 +178,10 @@ class DesignParameter:
         if self.kind is ParameterKind.MARGIN:
             return replace(actuator_law().at(rated), holds=False)
         return actuator_among(self.models, rated) if self.models else actuator_law().at(rated)
+
+    def actuators(self, rated: Scalar) -> dict[str, Actuator]:
+        """The actuator of a rated torque [N m] at each of the joints, by name."""
+        actuator = self.actuator(rated)
+        mounted = zip(self.joints, self.mountings, strict=True) if self.mountings else ()
+        found = {joint: replace(actuator, mounting=mounting) for joint, mounting in mounted}
+        return found or dict.fromkeys(self.joints, actuator)

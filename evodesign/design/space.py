@@ -141,7 +141,7 @@ class DesignSpace:
         found: dict[str, Actuator] = {}
         for parameter, value in zip(self.parameters, values, strict=True):
             if parameter.joints:
-                found |= dict.fromkeys(parameter.joints, parameter.actuator(value))
+                found |= parameter.actuators(value)
         return found
 
     @property

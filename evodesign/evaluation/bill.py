@@ -5,10 +5,12 @@
                         "share": of rated or peak torque, "loss_w": largest copper loss of the lift}},
      "links": {link: {"material": name, "wall_m", "mass_kg": without actuators,
                       "safety_factor": or null, "safety_case": case of the lift, or null}},
-     "mass_kg": {"actuators", "structure", "rest", "total"}}
+     "mass_kg": {"actuators", "structure", "rest", "total"},
+     "least_room": {"parts": two names, "room_m": negative where they do not go together}}
 
 What is asked by a load case is its factor times the torque, and its share that of peak torque; by a case of
-the lift, of rated torque. Structure is the walls' own mass. A problem without actuators and walls has none.
+the lift, of rated torque. Structure is the walls' own mass. Least room is told where actuators are bodies
+(`collision.parts`). A problem without actuators and walls has none.
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
+from evodesign.collision.parts import room_of
 from evodesign.design.space import DesignSpace
 from evodesign.evaluation.logged_posture import logged_posture
 from evodesign.hardware.actuators import Actuator
@@ -57,7 +60,11 @@ def bill_of_materials(problem: DesignProblem, tree: Tree, cases: Sequence[CaseDe
     total = float(tree.mass)
     mass = float(sum(each.mass for each in actuators.values()))
     split = {"actuators": mass, "structure": structure, "rest": total - mass - structure, "total": total}
-    return {"joints": joints, "links": links, "mass_kg": split}
+    bill: dict[str, Any] = {"joints": joints, "links": links, "mass_kg": split}
+    if room := room_of(tree):
+        least = room.least
+        bill["least_room"] = {"parts": [least.first, least.second], "room_m": least.distance}
+    return bill
 
 
 def _lifted(cases: Sequence[CaseDetail]) -> Iterator[Asked]:

@@ -157,7 +157,9 @@ class _OneDesign:
         chosen = {name: each for name, each in space.actuators(self._values).items() if each.holds}
         if chosen:
             body = body.carrying(mounted_solids(self._tree, chosen))
-        return SizedRobot(self._robot.agent, body, self._problem.stances, solver.near, solver.added)
+        return SizedRobot(
+            self._robot.agent, self._tree, body, self._problem.stances, solver.near, solver.added
+        )
 
     def sketched(self, values: Sequence[float]) -> Cases:
         """Postures of every case from one start each, not checked; none where something is lifted as well."""

@@ -50,12 +50,12 @@ from evodesign.quantities.motion_quantities import (
 from evodesign.quantities.objectives import QUANTITIES, REACH, SHARED_REACH, objective_value, split_name
 from evodesign.quantities.person_quantities import HOLDING_TIME
 from evodesign.records import Case, CaseGradient, Gradients, Lift
-from evodesign.violations import BODIES_APART, HEIGHT
+from evodesign.violations import BODIES_APART, HEIGHT, PARTS_APART
 
 MOST_CASES = 8
 """Cases of which each is logged for itself; a mean over more is logged alone."""
 
-OF_THE_ROBOT = frozenset({"mass", "com_height", "actuator_mass", "cost"})
+OF_THE_ROBOT = frozenset({"mass", "com_height", "actuator_mass", "cost", PARTS_APART})
 """Objectives that depend on the robot's bodies alone."""
 
 Found = Array | NotDifferentiable

@@ -29,6 +29,7 @@ import math
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from functools import cache
 from importlib import resources
 from itertools import pairwise
@@ -38,8 +39,8 @@ import msgspec
 import numpy as np
 from msgspec import Meta
 
-from evodesign.body.placement import Placement, Scalar
-from evodesign.body.shape import Solid, Sphere
+from evodesign.body.placement import Placement, Scalar, Vector, cross, dot, scale, transpose
+from evodesign.body.shape import Cylinder, Solid, Sphere
 from evodesign.records import Record
 
 LEAST_RATIO = 12.0
@@ -54,6 +55,27 @@ SLENDERNESS = 50.0 / 110.0
 ARC_MINUTE = math.pi / (180.0 * 60.0)
 
 Figure = Annotated[float, Meta(gt=0.0)]
+
+
+class Mount(StrEnum):
+    """How an actuator sits about its joint's axis: in the joint, or on one side of it."""
+
+    INLINE = "inline"
+    OFFSET = "offset"
+
+
+@dataclass(frozen=True, slots=True)
+class Mounting:
+    """Where the cylinder of an actuator lies about its joint's axis, in the link before the joint.
+
+    Args:
+        share: of its length, by which its middle lies along the axis: 0 in the joint, -0.5 or 0.5 for a
+            cylinder that ends there.
+        across: a vector across the axis, or nearly, in the joint's frame.
+    """
+
+    share: float
+    across: Vector
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +94,7 @@ class Actuator:
         holds: whether a posture in which more than the rated torque is asked for is none.
         price: [EUR]; None where it is not known.
         housing: diameter and length of the cylinder around it [m]; None where they follow from the mass.
+        mounting: where that cylinder lies; None for a ball of its mass in the joint, which is no body.
     """
 
     rated: Scalar
@@ -85,6 +108,7 @@ class Actuator:
     holds: bool = True
     price: float | None = None
     housing: tuple[Scalar, Scalar] | None = None
+    mounting: Mounting | None = None
 
     @property
     def size(self) -> tuple[Scalar, Scalar]:
@@ -318,12 +342,25 @@ def actuator_among(models: Sequence[Actuator], rated: Scalar) -> Actuator:
     return replace(models[0], rated=rated, model="", price=None, housing=housing, **figures)
 
 
-def mounted_solid(actuator: Actuator, link_from_joint: Placement) -> Solid:
-    """The ball of an actuator's mass, with its centre in the joint; exact derivatives in its mass.
+def mounted_solid(actuator: Actuator, link_from_joint: Placement, axis: Vector) -> Solid:
+    """The solid of an actuator's mass in the link that holds it, with exact derivatives.
+
+    It is the cylinder of its housing about the joint's axis, or, of one that is not mounted, a ball with its
+    centre in the joint.
 
     Args:
         actuator: numbers or expressions.
-        link_from_joint: the joint's place in the link that holds the actuator.
+        link_from_joint: the joint's place in the link.
+        axis: the joint's, a unit vector in its frame.
     """
-    radius = (actuator.mass * (3.0 / (4.0 * math.pi * DENSITY))) ** (1.0 / 3.0)
-    return Solid(Sphere(radius), Placement(translation=link_from_joint.translation), DENSITY)
+    mounting = actuator.mounting
+    if mounting is None:
+        radius = (actuator.mass * (3.0 / (4.0 * math.pi * DENSITY))) ** (1.0 / 3.0)
+        return Solid(Sphere(radius), Placement(translation=link_from_joint.translation), DENSITY)
+    diameter, length = actuator.size
+    shape = Cylinder(diameter / 2.0, length)
+    first = cross(axis, mounting.across)
+    first = scale(dot(first, first) ** -0.5, first)
+    turn = transpose((first, cross(axis, first), axis))
+    place = Placement(rotation=turn, translation=scale(mounting.share * length, axis))
+    return Solid(shape, link_from_joint @ place, actuator.mass / shape.volume)

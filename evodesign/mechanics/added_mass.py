@@ -16,6 +16,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from evodesign.body.placement import Vector
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.floating_base import ROOT, FloatingBody
 
@@ -58,18 +59,18 @@ class AddedMasses:
         upwards = self._moved * (jacobian[2] + y * jacobian[3] - x * jacobian[4])
         return np.asarray(GRAVITY * (self.groups @ upwards).T)
 
-    def loaded(self, body: FloatingBody, masses: Sequence[float]) -> FloatingBody:
-        """The body with a point of each group's mass [kg] at each of its frames.
+    def loaded(self, body: FloatingBody, masses: Sequence[float], aside: Sequence[Vector]) -> FloatingBody:
+        """The body with a point of each group's mass at each of its frames, or aside.
 
         Args:
             body: of a design.
-            masses: one per group.
+            masses: one per group [kg].
+            aside: of each frame, in its axes: where the mass lies [m]. Slopes do not know of it.
         """
-        model, nothing = pin.Model(body.model), pin.SE3.Identity()
-        points = [pin.Inertia(mass, np.zeros(3), np.zeros((3, 3))) for mass in masses]
-        for number, carrier, frame in self._carriers:
+        model, nothing, zero = pin.Model(body.model), pin.SE3.Identity(), np.zeros((3, 3))
+        for (number, carrier, frame), lies in zip(self._carriers, aside, strict=True):
             place = nothing if frame is None else model.frames[frame].placement
-            model.appendBodyToJoint(carrier, points[number], place)
+            model.appendBodyToJoint(carrier, pin.Inertia(masses[number], np.array(lies), zero), place)
         return replace(body, model=model)
 
     def places(self, body: FloatingBody) -> Array:

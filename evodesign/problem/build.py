@@ -24,7 +24,7 @@ from evodesign.problem.agents import (
     robot_agents,
 )
 from evodesign.problem.collisions import with_collisions
-from evodesign.problem.constraints import constraints_of, refuse_constraints, with_bodies_apart
+from evodesign.problem.constraints import constraints_of, refuse_constraints, with_what_can_be_built
 from evodesign.problem.descriptors import LOWEST_REACH, search_descriptors
 from evodesign.problem.design_geometry import joint_ranges_of
 from evodesign.problem.design_space import (
@@ -288,6 +288,7 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         method=tables.solver.method if source.method is None else MethodName(source.method),
     )
     options = available(options)
+    constraints = constraints_of(tables, source, robots[:1], people)
     return DesignProblem(
         name=tables.name,
         source=msgspec.structs.replace(source, method=options.method),
@@ -296,7 +297,7 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         tasks=tasks_of(tables, source),
         weights=weights,
         objectives=objectives_of(tables, source, scenes),
-        constraints=with_bodies_apart(constraints_of(tables, source, robots[:1], people), scenes[0].designed),
+        constraints=with_what_can_be_built(constraints, scenes[0].designed, space),
         options=options,
         limits=worker_limits(tables),
         symmetry=resolved.symmetry,

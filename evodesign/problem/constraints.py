@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
+from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.agent import Agent
 from evodesign.problem.file import BoundsTable, ProblemFile
@@ -23,7 +24,7 @@ from evodesign.quantities.objectives import (
     objective_kinds,
 )
 from evodesign.records import Constraint, ProblemSource
-from evodesign.violations import BODIES_APART
+from evodesign.violations import BODIES_APART, PARTS_APART
 
 SUFFIXES: Mapping[str, str] = {
     "N m": "_n_m",
@@ -96,13 +97,17 @@ def _check_bounds(table: BoundsTable, place: str, source: ProblemSource) -> None
         raise InputError(source.path, f"{place}.lower", f"less than upper ({upper:g})", f"{lower:g}")
 
 
-def with_bodies_apart(constraints: Sequence[Constraint], robots: Sequence[Agent]) -> tuple[Constraint, ...]:
-    """Constraints of a file, and that no design's build brings bodies together, where that may be."""
+def with_what_can_be_built(
+    constraints: Sequence[Constraint], robots: Sequence[Agent], space: DesignSpace
+) -> tuple[Constraint, ...]:
+    """Constraints of a file, and that a design can be built: that its bodies, and its parts, are apart."""
     named = {constraint.name for constraint in constraints}
-    built_in = any(robot.collisions is not None and robot.collisions.built_in for robot in robots)
-    if not built_in or BODIES_APART in named:
-        return tuple(constraints)
-    return (*constraints, Constraint(name=BODIES_APART, unit="m", lower=0.0, upper=None))
+    asked = {
+        BODIES_APART: any(robot.collisions is not None and robot.collisions.built_in for robot in robots),
+        PARTS_APART: any(parameter.mountings for parameter in space.parameters),
+    }
+    added = [name for name, may_not in asked.items() if may_not and name not in named]
+    return (*constraints, *(Constraint(name=name, unit="m", lower=0.0, upper=None) for name in added))
 
 
 def refuse_constraints(constraints: Sequence[Constraint], source: ProblemSource) -> None:

@@ -8,6 +8,7 @@ named, or chosen by a density parameter of the same links. Every contradiction i
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 from evodesign.body.material import Material
@@ -18,6 +19,7 @@ from evodesign.hardware.actuators import Actuator, CatalogueRow, actuator_of_row
 from evodesign.problem.design_space import known_materials
 from evodesign.problem.design_table import ActuatorTable, WallTable
 from evodesign.problem.file import ProblemFile
+from evodesign.problem.mountings import mountings_of
 from evodesign.problem.unknown_names import refuse_unknown
 from evodesign.records import ProblemSource
 from evodesign.tree.model import Tree
@@ -41,7 +43,8 @@ def actuator_parameters(tables: ProblemFile, source: ProblemSource, tree: Tree) 
                     source.path, where, "a joint in one actuator", f"'{joint}' also in {seen[joint]}"
                 )
             seen[joint] = key
-        found.append(_actuator(table, key, source, known))
+        parameter = _actuator(table, key, source, known)
+        found.append(replace(parameter, mountings=mountings_of(table, key, source, tree)))
     return found
 
 

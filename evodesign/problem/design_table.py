@@ -8,6 +8,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
+from evodesign.hardware.actuators import Mount
 from evodesign.problem.table import Name, Point, Positive, Share, Table
 
 Margin = Annotated[float, Meta(ge=1.0)]
@@ -88,7 +89,8 @@ class WallTable(Table, frozen=True):
 class ActuatorTable(Table, frozen=True):
     """`[[design.actuator]]`: what drives a group of joints.
 
-    Any rated torque within bounds, a model, or as many times what is asked of it as `margin` bounds.
+    Any rated torque within bounds, a model, or as many times what is asked of it as `margin` bounds. With
+    `mount` it is a body, the cylinder of its housing about each joint's axis; left out, a ball of its mass.
     """
 
     name: Name
@@ -96,6 +98,7 @@ class ActuatorTable(Table, frozen=True):
     rated_torque_n_m: tuple[Positive, Positive] | None = None
     models: tuple[Name, ...] | None = None
     margin: tuple[Margin, Margin] | None = None
+    mount: Mount | None = None
 
 
 class Feet(StrEnum):

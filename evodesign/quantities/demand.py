@@ -14,13 +14,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from evodesign.body.placement import scale
 from evodesign.design.space import DesignSpace
-from evodesign.hardware.actuators import actuator_law
+from evodesign.hardware.actuators import Actuator, actuator_law
 from evodesign.mechanics.added_mass import AddedMasses, joint_slopes
 from evodesign.mechanics.agent import ROBOT, Agent
 from evodesign.mechanics.floating_base import Configuration, FloatingBody
 from evodesign.mechanics.stance_case import StanceCase, StanceTorques, stance_slopes, stance_torques
 from evodesign.posture.results import CaseSolution
+from evodesign.tree.model import Tree
 
 Array = NDArray[np.float64]
 
@@ -31,6 +33,7 @@ class SizedRobot:
 
     Args:
         agent: as the file describes it.
+        tree: of the design.
         body: with all joints that move or are driven.
         stances: in which it stands alone.
         near: a similar robot in them.
@@ -38,6 +41,7 @@ class SizedRobot:
     """
 
     agent: Agent
+    tree: Tree
     body: FloatingBody
     stances: tuple[StanceCase, ...]
     near: tuple[StanceTorques, ...]
@@ -103,7 +107,9 @@ def demand_of(
         return "a height is not held"
     parameters, joints = [space.parameters[place] for place in space.margins], robot.body.joints
     law = actuator_law()
-    body = robot.added.loaded(robot.body, [law.mass(law.peak(values[place])) for place in space.margins])
+    body = _with_actuators(
+        robot, [space.parameters[place].actuators(values[place]) for place in space.margins]
+    )
     share = 1.0 / float(law.peak(1.0))
     rows = _lift_rows(cases, joints)
     alone = []
@@ -124,6 +130,19 @@ def demand_of(
         slopes=_slopes(robot, body, cases, alone, share) if before is None else before.slopes,
         alone=tuple(alone),
     )
+
+
+def _with_actuators(robot: SizedRobot, sized: Sequence[Mapping[str, Actuator]]) -> FloatingBody:
+    """The robot's body with the actuators of each group, by joint."""
+    masses = [next(iter(group.values())).mass for group in sized]
+    aside = [
+        (0.0, 0.0, 0.0)
+        if each.mounting is None
+        else scale(each.mounting.share * each.size[1], robot.tree.joint_by_name[joint].axis)
+        for group in sized
+        for joint, each in group.items()
+    ]
+    return robot.added.loaded(robot.body, masses, aside)
 
 
 def _lift_rows(cases: Sequence[CaseSolution], joints: Sequence[str]) -> list[list[float]]:

@@ -24,6 +24,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from evodesign.collision.parts import room_of
 from evodesign.collision.zero_posture import built_in_slack
 from evodesign.errors import InputError
 from evodesign.human.strength import largest_relative_torque
@@ -70,7 +71,7 @@ from evodesign.quantities.person_quantities import (
     endurance_seconds,
 )
 from evodesign.records import Constraint, Lift, Objective
-from evodesign.violations import BODIES_APART
+from evodesign.violations import BODIES_APART, PARTS_APART
 
 
 def torque_norm(agent: Agent, posture: AgentPosture) -> float:
@@ -135,6 +136,12 @@ def bodies_apart(result: DesignResult) -> float | None:
     """
     found = built_in_slack(result.tree, result.robot.collisions)
     return None if found is None else found[0]
+
+
+def parts_apart(result: DesignResult) -> float | None:
+    """How much room the parts have that have least, or minus what all lack [m]; None without such parts."""
+    found = room_of(result.tree)
+    return None if found is None else found.apart
 
 
 def mass(result: DesignResult) -> float:
@@ -263,7 +270,7 @@ NEED_ROBOTS = frozenset(
     {
         *("robot_torque", "peak_torque", "holding_power", "hand_deflection", POWER, ENERGY),
         *("mass", "com_height", "actuator_mass", "cost", "torque_margin", "least_safety_factor"),
-        *(BODIES_APART, "paper_cost", "paper2023_cost"),
+        *(BODIES_APART, PARTS_APART, "paper_cost", "paper2023_cost"),
     }
 )
 """Quantities that are of robots."""
@@ -291,6 +298,7 @@ WHOLE: Mapping[str, ObjectiveKind] = {
     REACH: ObjectiveKind("m", reach_height),
     SHARED_REACH: ObjectiveKind("m", shared_reach_height),
     BODIES_APART: ObjectiveKind("m", bodies_apart),
+    PARTS_APART: ObjectiveKind("m", parts_apart),
     "mass": ObjectiveKind("kg", mass),
     "actuator_mass": ObjectiveKind("kg", mass_of_actuators),
     "cost": ObjectiveKind("EUR", lambda result: cost(result.tree)),

@@ -2,8 +2,8 @@
 
     wall       every solid of the link becomes hollow; a share of its mass in the file (cables, boards,
                covers) stays, spread evenly over it, whatever the wall
-    actuator   its mass is a ball at the joint, in the link before it; the joint's effort limit is its peak
-               torque and its velocity limit its speed without load
+    actuator   its mass is a ball at the joint, or a cylinder about its axis, in the link before it; the
+               joint's effort limit is its peak torque and its velocity limit its speed without load
 
 Thicknesses, densities and figures of actuators may be expressions.
 """
@@ -103,7 +103,7 @@ def _driven(joint: Joint, actuator: Actuator | None) -> Joint:
 
 
 def mounted_solids(tree: Tree, actuators: Mapping[str, Actuator]) -> Iterator[tuple[str, Solid]]:
-    """The balls of actuators, each with the link that holds it.
+    """The solids of actuators, each with the link that holds it.
 
     Args:
         tree: in its final size.
@@ -111,7 +111,7 @@ def mounted_solids(tree: Tree, actuators: Mapping[str, Actuator]) -> Iterator[tu
     """
     for joint in tree.joints:
         if joint.name in actuators:
-            yield joint.parent, mounted_solid(actuators[joint.name], joint.parent_from_child)
+            yield joint.parent, mounted_solid(actuators[joint.name], joint.parent_from_child, joint.axis)
 
 
 def rated_torques(tree: Tree) -> dict[str, Scalar]:

@@ -17,7 +17,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from evodesign.body.inertia import Inertia
-from evodesign.body.placement import Matrix, Scalar, Vector, dot, rotate, scale, transpose
+from evodesign.body.placement import Matrix, Scalar, Vector, cross, dot, rotate, scale, transpose
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.errors import ModelError
 from evodesign.tree.model import Link, Tree
@@ -89,13 +89,9 @@ def with_sections(tree: Tree, changes: Iterable[tuple[SectionChange, Scalar]]) -
 def _perpendicular(along: Vector) -> tuple[Vector, Vector]:
     """Two unit vectors across one of numbers, and across each other."""
     least = min(range(3), key=lambda place: abs(along[place]))
-    first = _cross(along, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))[least])
+    first = cross(along, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))[least])
     first = scale(1.0 / math.sqrt(dot(first, first)), first)
-    return first, _cross(along, first)
-
-
-def _cross(a: Vector, b: Vector) -> Vector:
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+    return first, cross(along, first)
 
 
 def _widened(link: Link, change: SectionChange, factor: Scalar) -> Link:

@@ -36,6 +36,16 @@ def kernel(known: Precomputed) -> Iterator[tuple[ThisPython, BlockingKernelClien
     manager.shutdown_kernel(now=True)
 
 
+def wait_for_line(client: BlockingKernelClient, line: str) -> None:
+    """Wait until the cell at work prints a line; an error of it is the test's."""
+    while True:
+        message = client.get_iopub_msg(timeout=300)
+        content = message["content"]
+        assert message["msg_type"] != "error", "\n".join(content["traceback"])
+        if content.get("name") == "stdout" and line in content["text"].splitlines():
+            return
+
+
 def reply(client: BlockingKernelClient, request: str) -> dict[str, Any]:
     while True:
         answer = client.get_shell_msg(timeout=300)
@@ -56,8 +66,7 @@ def test_the_stop_button_leaves_a_run_that_the_next_cell_resumes(
     )
     # a kernel drops, for a moment, what is asked after an error; people press no faster
     request = client.execute(cell, stop_on_error=False)
-    while client.get_iopub_msg(timeout=300)["content"].get("text", "").strip() == "":
-        pass
+    wait_for_line(client, "one")
     manager.interrupt_kernel()
     stopped = reply(client, request)
     assert (stopped["status"], stopped["ename"]) == ("error", "Interrupted")

@@ -29,6 +29,7 @@ TORQUES = ("robot_torque", "human_torque")
 
 NEED_MORE = (
     "bodies_apart",
+    "parts_apart",
     "shared_reach_height",
     "least_safety_factor",
     "cost",

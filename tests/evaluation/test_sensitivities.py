@@ -27,7 +27,7 @@ from evodesign.tree.kinematics import Pose, forward
 OBJECTIVES = {
     name: kind
     for name, kind in objective_kinds().items()
-    if name not in ("bodies_apart", "torque_margin", "least_safety_factor", "cost", "energy")
+    if name not in ("bodies_apart", "parts_apart", "torque_margin", "least_safety_factor", "cost", "energy")
     and "lift_seconds" not in name
 }
 """Those that a robot without actuators has, which holds a load, in a problem without [collisions]."""

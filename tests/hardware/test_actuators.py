@@ -113,7 +113,7 @@ def test_the_law_works_with_expressions_and_its_ball_has_the_mass() -> None:
     symbol = ca.SX.sym("rated")
     actuator = actuator_law().at(symbol)
     place = Placement(translation=(0.1, 0.2, 0.3))
-    inertia = mounted_solid(actuator, place).inertia
+    inertia = mounted_solid(actuator, place, (1.0, 0.0, 0.0)).inertia
     found = ca.Function("f", [symbol], [actuator.mass, inertia.mass, inertia.about_center[0][0]])
     number = actuator_law().at(30.0)
     radius = (3.0 * number.mass / (4.0 * math.pi * 3000.0)) ** (1 / 3)

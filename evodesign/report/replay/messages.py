@@ -30,7 +30,7 @@ from foxglove_schemas_protobuf.TextPrimitive_pb2 import TextPrimitive
 from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
 from google.protobuf.timestamp_pb2 import Timestamp
 
-from evodesign.body.placement import Matrix, Placement, Vector, dot, quaternion_wxyz, scale
+from evodesign.body.placement import Matrix, Placement, Vector, cross, dot, quaternion_wxyz, scale
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.records import AgentDetail, CaseDetail
 from evodesign.report.scene_models import LOAD, PlacedScene, looks_of
@@ -230,14 +230,10 @@ def add_text(entity: SceneEntity, place: Vector, text: str) -> None:
 def _towards(way: Vector) -> Matrix:
     """A rotation that takes x to a unit vector: its columns are the vector and two across."""
     aside: Vector = (0.0, 0.0, 1.0) if abs(way[2]) < 0.9 else (0.0, 1.0, 0.0)
-    up = _cross(way, _cross(aside, way))
+    up = cross(way, cross(aside, way))
     up = scale(1.0 / math.sqrt(dot(up, up)), up)
-    left = _cross(up, way)
+    left = cross(up, way)
     return tuple(zip(way, left, up, strict=True))  # type: ignore[return-value]
-
-
-def _cross(a: Vector, b: Vector) -> Vector:
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def pose_of(place: Placement) -> Any:

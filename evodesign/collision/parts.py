@@ -1,0 +1,165 @@
+"""Whether the parts of a robot go together: actuators that are bodies, beside each other and in their links.
+
+An actuator is the cylinder of its housing (`hardware.actuators.Mounting`). While all joints are at zero it
+keeps clear of
+
+    all other actuators
+    links                but for the one that holds it and those that a joint joins to that one
+
+and what holds one whose middle is in the joint is as thick as it: across the link's length, the housing lies
+within the link's solid,
+
+    ball            r >= |(R, h)|
+    cylinder        r >= R where both axes are alike, else r >= |(R, h)|
+    box             each of the two shorter half sides >= h |u_i| + R sqrt(1 - u_i^2)
+
+with R the radius and h half the length of the housing, u its axis in the solid's frame. Of a link with
+several solids the roomiest counts; of one without solids nothing is known.
+
+Source: distances by coal; the support of a cylinder.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import combinations
+
+import numpy as np
+
+from evodesign.body.placement import Placement
+from evodesign.body.shape import Cylinder, Solid, Sphere
+from evodesign.collision.clearance import BodyDistance, Places, SolidBodies, places_of
+from evodesign.collision.shapes import Array, solid_of
+from evodesign.hardware.actuators import Actuator, mounted_solid
+from evodesign.tree.frames import link_frames
+from evodesign.tree.model import Joint, JointKind, Tree
+
+ALIKE = 0.7
+"""Cosine of two axes from which on they count as alike."""
+
+PART = "actuator of "
+"""How the names of actuators begin."""
+
+Mounted = tuple[Joint, Actuator, Solid]
+Chain = tuple[tuple[str, JointKind, str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Room:
+    """How much room the parts of a robot have.
+
+    Args:
+        least: of the two parts that have least, negative where they do not go together.
+        lacking: the sum of what all pairs lack [m]; 0 where all go together.
+    """
+
+    least: BodyDistance
+    lacking: float
+
+    @property
+    def apart(self) -> float:
+        """The least room [m], or minus what is lacking: continuous, and smooth while the same pairs lack."""
+        return -self.lacking if self.lacking > 0.0 else self.least.distance
+
+
+def room_of(tree: Tree) -> Room | None:
+    """How much room the parts of a robot have; None where no actuator is a body.
+
+    Args:
+        tree: of a design, numbers, with its actuators.
+    """
+    mounted = [*_mounted(tree)]
+    if not mounted:
+        return None
+    own = SolidBodies(
+        tuple(part_name(joint) for joint, _, _ in mounted),
+        tuple(solid_of(solid.shape, solid.link_from_solid) for _, _, solid in mounted),
+    )
+    frames = link_frames(tree, Placement(), {})
+    at = {part_name(joint): frames[joint.parent] for joint, _, _ in mounted}
+    links = SolidBodies.of_tree(tree).hulls
+    placed = own.placed(at).beside(links.placed(frames))
+    joints = tuple((each.name, each.kind, each.parent, each.child) for each in tree.joints)
+    places = _places(joints, placed.names, len(own.names))
+    found = [*_thickness(tree, mounted), *placed.overlapping(places)]
+    lacking = sum(max(0.0, -gap.distance) for gap in found)
+    if lacking == 0.0 and len(places):
+        found.append(placed.nearest(places))
+    return Room(min(found, key=lambda gap: gap.distance), lacking) if found else None
+
+
+def part_name(joint: Joint) -> str:
+    """What a joint's actuator is called."""
+    return f"{PART}{joint.name}"
+
+
+def _mounted(tree: Tree) -> Iterator[Mounted]:
+    for joint in tree.joints:
+        actuator = joint.actuator
+        if actuator is not None and actuator.mounting is not None:
+            yield joint, actuator, mounted_solid(actuator, joint.parent_from_child, joint.axis)
+
+
+@lru_cache(maxsize=16)
+def _places(joints: Chain, names: tuple[str, ...], count: int) -> Places:
+    """Which solids keep clear of each other: the same for all designs of a problem.
+
+    Args:
+        joints: name, kind, parent and child of each of the tree.
+        names: of the solids, the actuators' first.
+        count: how many are actuators.
+    """
+    parents = {f"{PART}{name}": parent for name, _, parent, _ in joints}
+    above = {child: (parent, kind is not JointKind.FIXED) for _, kind, parent, child in joints}
+    own, links = names[:count], tuple(dict.fromkeys(names[count:]))
+    far = {
+        (one, link) for one in {*parents.values()} for link in links if _moving_between(above, one, link) > 1
+    }
+    beside = ((one, link) for one in own for link in links if (parents[one], link) in far)
+    return places_of(names, [*combinations(own, 2), *beside])
+
+
+def _moving_between(above: Mapping[str, tuple[str, bool]], one: str, other: str) -> int:
+    """How many joints that move are between two links."""
+    chains = []
+    for link in (one, other):
+        chain = []
+        while link in above:
+            chain.append(link)
+            link, _ = above[link]
+        chains.append({*chain})
+    return sum(above[child][1] for child in chains[0] ^ chains[1])
+
+
+def _thickness(tree: Tree, mounted: list[Mounted]) -> Iterator[BodyDistance]:
+    """How much thicker links are than what they hold in their joints."""
+    for joint, actuator, solid in mounted:
+        holders = tree.link_by_name[joint.parent].solids
+        if actuator.mounting is not None and actuator.mounting.share == 0.0 and holders:
+            axis = np.array(solid.link_from_solid.rotation, float)[:, 2]
+            diameter, length = map(float, actuator.size)
+            room = max(room_in(holder, axis, diameter / 2.0, length / 2.0) for holder in holders)
+            yield BodyDistance(part_name(joint), joint.parent, room)
+
+
+def room_in(holder: Solid, axis: Array, radius: float, half: float) -> float:
+    """How much thicker a solid is than a housing that it holds [m], across its length.
+
+    Args:
+        holder: of a link.
+        axis: of the housing, a unit vector in the link's frame.
+        radius: of the housing [m].
+        half: of its length [m].
+    """
+    shape = holder.shape
+    if isinstance(shape, Sphere):
+        return float(shape.radius) - math.hypot(radius, half)
+    turned = np.abs(np.array(holder.link_from_solid.rotation, float).T @ axis)
+    if isinstance(shape, Cylinder):
+        return float(shape.radius) - (radius if turned[2] > ALIKE else math.hypot(radius, half))
+    sides = np.array(shape.sides, float) / 2.0
+    rooms = sides - half * turned - radius * np.sqrt(np.maximum(0.0, 1.0 - turned**2))
+    return float(np.delete(rooms, np.argmax(sides)).min())
