@@ -119,4 +119,4 @@ def test_the_law_works_with_expressions_and_its_ball_has_the_mass() -> None:
     radius = (3.0 * number.mass / (4.0 * math.pi * 3000.0)) ** (1 / 3)
     wanted = (number.mass, number.mass, 0.4 * number.mass * radius**2)
     assert [float(each) for each in found(30.0)] == pytest.approx(wanted, rel=1e-12)
-    assert mounted_solid(number, place).inertia.center == (0.1, 0.2, 0.3)
+    assert mounted_solid(number, place, (1.0, 0.0, 0.0)).inertia.center == (0.1, 0.2, 0.3)
