@@ -1,4 +1,4 @@
-"""Actuators: a catalogue of what can be ordered, and laws that tell what lies between its sizes.
+"""Actuators, and laws that tell what lies between the sizes of those that can be ordered.
 
 An actuator is motor, gear, housing and drive in one piece. Its figures are those at its output.
 
@@ -8,52 +8,45 @@ An actuator is motor, gear, housing and drive in one piece. Its figures are thos
                         mass     = a peak^b
                         K, J, speed = a rated^b
                         windup   = mean ratio x rated   [N m/rad]
+                        diameter, length = a mass^b
 
 with k_t the torque at the output per ampere (rms) of phase current, R the resistance of one of three phases
 in star connection, N the gear's ratio. The gear's losses are in k_t; that its friction helps a motor to hold
 is left out, so the loss is rather too high.
 
-The laws are least squares in the logarithms over the planetary actuators of ratio 12 and above whose maker
-gives all figures; windup is that of gears by themselves, as nobody gives it for whole actuators. What a
-maker does not give of a model is the law's at its torque.
+The laws are least squares in the logarithms, one for each kind of gear. That of planetary gears is fitted to
+seven actuators of ratio 12 and above whose maker gives all figures. Windup is that of gears by themselves, as
+nobody gives it for whole actuators. What a maker does not give of a model is the law's at its torque.
 
-Beyond 300 lines: rows, laws and what is chosen among them have the same figures.
-
-Source: `data/actuators.toml`, each row with its own; the form of the laws: Budinger et al. 2012 (scaling laws
+Source: the catalogue (`hardware.catalogue`), each row with its own; the form of the laws: Budinger et al. 2012 (scaling laws
 of actuators), Wensing et al. 2017 (reflected inertia).
 """
 
 from __future__ import annotations
 
 import math
-import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from importlib import resources
 from itertools import pairwise
-from typing import Annotated, Any
+from operator import attrgetter
+from typing import Any
 
-import msgspec
 import numpy as np
-from msgspec import Meta
 
 from evodesign.body.placement import Placement, Scalar
 from evodesign.body.shape import Solid, Sphere
-from evodesign.records import Record
+from evodesign.errors import InputError
+from evodesign.hardware.catalogue import CatalogueRow, Gear, catalogue, gearheads
 
-LEAST_RATIO = 12.0
-"""Ratio of the gear from which on an actuator belongs to the law's family: two planetary stages."""
+LEAST_ROWS = 4
+"""Rows of the catalogue that have a figure, from which on there is a law of it."""
 
 DENSITY = 3000.0
 """Mass over volume of an actuator [kg/m^3]: RS04, 1.42 kg in a cylinder of 110 mm by 50 mm."""
 
 SLENDERNESS = 50.0 / 110.0
 """Length over diameter of a housing whose maker does not give them: that of RS04."""
-
-ARC_MINUTE = math.pi / (180.0 * 60.0)
-
-Figure = Annotated[float, Meta(gt=0.0)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,87 +96,6 @@ class Actuator:
         return torque / self.stiffness
 
 
-class CatalogueRow(Record, frozen=True, kw_only=True):
-    """An actuator of the catalogue, with the keys of `data/actuators.toml`; None: the source does not say."""
-
-    model: str
-    mass_kg: Figure
-    peak_torque_n_m: Figure
-    source: str
-    rated_torque_n_m: Figure | None = None
-    ratio: Figure | None = None
-    torque_constant_n_m_per_a: Figure | None = None
-    phase_resistance_ohm: Figure | None = None
-    rotor_inertia_kg_cm2: Figure | None = None
-    no_load_speed_rpm: Figure | None = None
-    price_eur: Figure | None = None
-    diameter_m: Figure | None = None
-    length_m: Figure | None = None
-
-    @property
-    def housing(self) -> tuple[float, float] | None:
-        """Diameter and length [m]."""
-        given = self.diameter_m, self.length_m
-        return None if given[0] is None or given[1] is None else (given[0], given[1])
-
-    @property
-    def motor_constant(self) -> float | None:
-        """K = k_t / sqrt(3 R) [N m/W^0.5]."""
-        if self.torque_constant_n_m_per_a is None or self.phase_resistance_ohm is None:
-            return None
-        return self.torque_constant_n_m_per_a / math.sqrt(3.0 * self.phase_resistance_ohm)
-
-    @property
-    def reflected_inertia(self) -> float | None:
-        """N^2 J_rotor [kg m^2]."""
-        if self.ratio is None or self.rotor_inertia_kg_cm2 is None:
-            return None
-        return self.ratio**2 * self.rotor_inertia_kg_cm2 * 1e-4
-
-    @property
-    def speed(self) -> float | None:
-        """Without load [rad/s]."""
-        return None if self.no_load_speed_rpm is None else self.no_load_speed_rpm * math.tau / 60.0
-
-
-class Gearhead(Record, frozen=True):
-    """A gear by itself: the torque that it can carry for ever, and its stiffness."""
-
-    model: str
-    rated_torque_n_m: Figure
-    stiffness_n_m_per_arcmin: Figure
-    source: str
-
-    @property
-    def relative_stiffness(self) -> float:
-        """Stiffness per rated torque [1/rad]."""
-        return self.stiffness_n_m_per_arcmin / ARC_MINUTE / self.rated_torque_n_m
-
-
-class Catalogue(Record, frozen=True):
-    """The whole data file."""
-
-    sources: dict[str, str]
-    actuators: tuple[CatalogueRow, ...]
-    gearheads: tuple[Gearhead, ...]
-
-
-@cache
-def _file() -> Catalogue:
-    text = resources.files("evodesign.hardware").joinpath("data", "actuators.toml").read_text("utf-8")
-    return msgspec.convert(tomllib.loads(text), Catalogue)
-
-
-def catalogue() -> Mapping[str, CatalogueRow]:
-    """The actuators that every problem knows, by model."""
-    return {row.model: row for row in _file().actuators}
-
-
-def catalogue_sources() -> Mapping[str, str]:
-    """What the rows' sources stand for."""
-    return _file().sources
-
-
 @dataclass(frozen=True, slots=True)
 class PowerLaw:
     """The law y = factor x^exponent.
@@ -230,6 +142,7 @@ class ActuatorLaw:
         inertia: reflected [kg m^2], by rated torque [N m].
         speed: [rad/s] by rated torque [N m].
         stiffness: [N m/rad] by rated torque [N m].
+        diameter, length: of the housing [m], by mass [kg].
     """
 
     peak: PowerLaw
@@ -238,40 +151,79 @@ class ActuatorLaw:
     inertia: PowerLaw
     speed: PowerLaw
     stiffness: PowerLaw
+    diameter: PowerLaw
+    length: PowerLaw
 
     def at(self, rated: Scalar) -> Actuator:
         """The actuator of a rated torque [N m], a number or an expression."""
         peak = self.peak(rated)
+        mass = self.mass(peak)
         return Actuator(
             rated=rated,
             peak=peak,
-            mass=self.mass(peak),
+            mass=mass,
             motor_constant=self.motor_constant(rated),
             inertia=self.inertia(rated),
             stiffness=self.stiffness(rated),
             speed=self.speed(rated),
+            housing=self.housing(mass),
         )
+
+    def housing(self, mass: Scalar) -> tuple[Scalar, Scalar]:
+        """Diameter and length [m] of an actuator of a mass [kg], a number or an expression."""
+        return self.diameter(mass), self.length(mass)
 
 
 @cache
-def actuator_law() -> ActuatorLaw:
-    """The law of the catalogue's planetary actuators of ratio 12 and above whose maker gives all figures."""
-    rows = [row for row in _file().actuators if _is_complete(row) and (row.ratio or 0.0) >= LEAST_RATIO]
-    rated = [float(row.rated_torque_n_m or 0.0) for row in rows]
-    gears = _file().gearheads
-    return ActuatorLaw(
-        peak=fitted_power_law(rated, [row.peak_torque_n_m for row in rows], exponent=1.0),
-        mass=fitted_power_law([row.peak_torque_n_m for row in rows], [row.mass_kg for row in rows]),
-        motor_constant=fitted_power_law(rated, [row.motor_constant or 0.0 for row in rows]),
-        inertia=fitted_power_law(rated, [row.reflected_inertia or 0.0 for row in rows]),
-        speed=fitted_power_law(rated, [row.speed or 0.0 for row in rows]),
-        stiffness=fitted_power_law([1.0] * len(gears), [gear.relative_stiffness for gear in gears], 1.0),
-    )
+def actuator_law(gear: Gear = Gear.PLANETARY) -> ActuatorLaw:
+    """The law of the catalogue's actuators with a kind of gear.
+
+    Each figure is fitted to the rows of the kind that have it: a strain wave drive's motor constant is that of
+    two makers, its reflected inertia that of three others, its speed mostly the highest that its gear may turn.
+    The planetary law, which problems use unless they say otherwise, is fitted to the rows that are marked
+    `in_default_law` but for the housing's diameter and length: rows can be added without moving it.
+
+    Raises:
+        InputError: fewer than four rows of the kind have one of the figures.
+    """
+    rows = [row for row in catalogue().values() if row.gear is gear]
+    named = [row for row in rows if row.in_default_law] or rows
+    gears = gearheads(gear)
+    fits = {
+        "peak": _fit(named, _RATED, _PEAK, exponent=1.0),
+        "mass": _fit(named, _PEAK, _MASS),
+        "motor_constant": _fit(named, _RATED, lambda row: row.motor_constant),
+        "inertia": _fit(named, _RATED, lambda row: row.reflected_inertia),
+        "speed": _fit(named, _RATED, lambda row: row.speed),
+        "stiffness": fitted_power_law([1.0] * len(gears), [each.relative_stiffness for each in gears], 1.0)
+        if len(gears) >= LEAST_ROWS
+        else None,
+        "diameter": _fit(rows, _MASS, lambda row: row.housing and row.diameter_m),
+        "length": _fit(rows, _MASS, lambda row: row.housing and row.length_m),
+    }
+    laws = {name: law for name, law in fits.items() if law is not None}
+    if len(laws) < len(fits):
+        lacking = next(name for name in fits if name not in laws)
+        wanted = f"a gear of which {LEAST_ROWS} rows of the catalogue have each figure"
+        raise InputError("catalogue", "gear", wanted, f"'{gear}', of which too few have the {lacking}")
+    return ActuatorLaw(**laws)
 
 
-def _is_complete(row: CatalogueRow) -> bool:
-    known = (row.rated_torque_n_m, row.motor_constant, row.reflected_inertia, row.speed)
-    return None not in known
+_RATED, _PEAK, _MASS = attrgetter("rated_torque_n_m"), attrgetter("peak_torque_n_m"), attrgetter("mass_kg")
+
+
+def _fit(
+    rows: Sequence[CatalogueRow],
+    x: Callable[[CatalogueRow], float | None],
+    y: Callable[[CatalogueRow], float | None],
+    exponent: float | None = None,
+) -> PowerLaw | None:
+    """The law of the rows that have both figures; None of fewer than four."""
+    pairs = [(x(row), y(row)) for row in rows]
+    known = [(a, b) for a, b in pairs if a is not None and b is not None]
+    if len(known) < LEAST_ROWS:
+        return None
+    return fitted_power_law([a for a, _ in known], [b for _, b in known], exponent)
 
 
 def actuator_of_row(row: CatalogueRow, law: ActuatorLaw | None = None) -> Actuator:
@@ -279,9 +231,10 @@ def actuator_of_row(row: CatalogueRow, law: ActuatorLaw | None = None) -> Actuat
 
     Args:
         row: of the catalogue, or a user's own.
-        law: that of the catalogue if left out.
+        law: that of the row's gear in the catalogue if left out, or of planetary gears.
     """
-    law = actuator_law() if law is None else law
+    if law is None:
+        law = actuator_law(Gear.STRAIN_WAVE if row.gear is Gear.STRAIN_WAVE else Gear.PLANETARY)
     rated = row.rated_torque_n_m
     if rated is None:
         rated = row.peak_torque_n_m / law.peak.factor
@@ -291,7 +244,7 @@ def actuator_of_row(row: CatalogueRow, law: ActuatorLaw | None = None) -> Actuat
         "motor_constant": row.motor_constant,
         "inertia": row.reflected_inertia,
         "speed": row.speed,
-        "housing": row.housing,
+        "housing": row.housing or law.housing(row.mass_kg),
     }
     known: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     return replace(law.at(rated), model=row.model, price=row.price_eur, **known)
