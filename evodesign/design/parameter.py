@@ -20,7 +20,8 @@ from enum import StrEnum
 
 from evodesign.body.material import Material
 from evodesign.body.placement import Scalar
-from evodesign.hardware.actuators import Actuator, actuator_among, actuator_law
+from evodesign.hardware.actuators import Actuator, ActuatorLaw, actuator_among, actuator_law
+from evodesign.hardware.catalogue import Gear
 from evodesign.records import Parameter, middle_of
 from evodesign.tree.joint_changes import JointChange
 from evodesign.tree.sections import SectionChange
@@ -104,6 +105,7 @@ class DesignParameter:
         models: of which an actuator must be one, the weakest first; none if the law makes one of any size.
         changes: of joints, that the value makes.
         sections: of links, whose multiplier the value is.
+        gear: of an actuator of any size, whose law it follows.
     """
 
     kind: ParameterKind
@@ -116,6 +118,7 @@ class DesignParameter:
     models: tuple[Actuator, ...] = ()
     changes: tuple[JointChange, ...] = ()
     sections: tuple[SectionChange, ...] = ()
+    gear: Gear = Gear.PLANETARY
 
     @property
     def choices(self) -> tuple[float, ...]:
@@ -168,11 +171,16 @@ class DesignParameter:
             logarithmic=self.logarithmic,
         )
 
+    @property
+    def law(self) -> ActuatorLaw:
+        """That an actuator of any size follows."""
+        return actuator_law(self.gear)
+
     def actuator(self, rated: Scalar) -> Actuator:
         """The actuator of a rated torque [N m], a number or an expression.
 
         One that is sized holds whatever is asked of it, so that its size can be told.
         """
         if self.kind is ParameterKind.MARGIN:
-            return replace(actuator_law().at(rated), holds=False)
-        return actuator_among(self.models, rated) if self.models else actuator_law().at(rated)
+            return replace(self.law.at(rated), holds=False)
+        return actuator_among(self.models, rated) if self.models else self.law.at(rated)

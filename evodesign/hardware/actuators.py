@@ -18,8 +18,8 @@ The laws are least squares in the logarithms, one for each kind of gear. That of
 seven actuators of ratio 12 and above whose maker gives all figures. Windup is that of gears by themselves, as
 nobody gives it for whole actuators. What a maker does not give of a model is the law's at its torque.
 
-Source: the catalogue (`hardware.catalogue`), each row with its own; the form of the laws: Budinger et al. 2012 (scaling laws
-of actuators), Wensing et al. 2017 (reflected inertia).
+Source: the catalogue (`hardware.catalogue`), each row with its own; the form of the laws: Budinger et al.
+2012 (scaling laws of actuators), Wensing et al. 2017 (reflected inertia).
 """
 
 from __future__ import annotations
@@ -175,38 +175,46 @@ class ActuatorLaw:
 
 
 @cache
-def actuator_law(gear: Gear = Gear.PLANETARY) -> ActuatorLaw:
+def actuator_law(gear: Gear | str = Gear.PLANETARY) -> ActuatorLaw:
     """The law of the catalogue's actuators with a kind of gear.
 
-    Each figure is fitted to the rows of the kind that have it: a strain wave drive's motor constant is that of
-    two makers, its reflected inertia that of three others, its speed mostly the highest that its gear may turn.
-    The planetary law, which problems use unless they say otherwise, is fitted to the rows that are marked
-    `in_default_law` but for the housing's diameter and length: rows can be added without moving it.
+    Each figure is fitted to the rows of the kind that have it. Of strain wave drives, two makers give motor
+    constants and three reflected inertias, one of them both, and most speeds are the highest that the gear
+    may turn. The planetary law, which problems use unless they say otherwise, is fitted to the rows marked
+    `in_default_law`, but for diameter and length: rows can be added without moving the rest of it.
 
     Raises:
-        InputError: fewer than four rows of the kind have one of the figures.
+        InputError: no kind of gear, or one of which fewer than four rows have one of the figures.
     """
-    rows = [row for row in catalogue().values() if row.gear is gear]
+    laws = _laws(gear)
+    if any(law is None for law in laws.values()):
+        wanted = f"a gear of which {LEAST_ROWS} rows have each figure: {', '.join(gears_with_a_law())}"
+        raise InputError("catalogue", "gear", wanted, f"'{gear}'")
+    return ActuatorLaw(**{name: law for name, law in laws.items() if law is not None})
+
+
+@cache
+def gears_with_a_law() -> tuple[str, ...]:
+    """The kinds of gear of which the catalogue has rows enough."""
+    return tuple(kind.value for kind in Gear if None not in _laws(kind).values())
+
+
+def _laws(gear: Gear | str) -> dict[str, PowerLaw | None]:
+    """The fields of the law of a gear; None of which too few rows have the figures."""
+    rows = [row for row in catalogue().values() if row.gear == gear]
     named = [row for row in rows if row.in_default_law] or rows
-    gears = gearheads(gear)
-    fits = {
+    stiffness = [each.relative_stiffness for each in gearheads(gear)]
+    enough = len(stiffness) >= LEAST_ROWS
+    return {
         "peak": _fit(named, _RATED, _PEAK, exponent=1.0),
         "mass": _fit(named, _PEAK, _MASS),
-        "motor_constant": _fit(named, _RATED, lambda row: row.motor_constant),
-        "inertia": _fit(named, _RATED, lambda row: row.reflected_inertia),
-        "speed": _fit(named, _RATED, lambda row: row.speed),
-        "stiffness": fitted_power_law([1.0] * len(gears), [each.relative_stiffness for each in gears], 1.0)
-        if len(gears) >= LEAST_ROWS
-        else None,
-        "diameter": _fit(rows, _MASS, lambda row: row.housing and row.diameter_m),
-        "length": _fit(rows, _MASS, lambda row: row.housing and row.length_m),
+        "motor_constant": _fit(named, _RATED, attrgetter("motor_constant")),
+        "inertia": _fit(named, _RATED, attrgetter("reflected_inertia")),
+        "speed": _fit(named, _RATED, attrgetter("speed")),
+        "stiffness": fitted_power_law([1.0] * len(stiffness), stiffness, 1.0) if enough else None,
+        "diameter": _fit([row for row in rows if row.housing], _MASS, attrgetter("diameter_m")),
+        "length": _fit([row for row in rows if row.housing], _MASS, attrgetter("length_m")),
     }
-    laws = {name: law for name, law in fits.items() if law is not None}
-    if len(laws) < len(fits):
-        lacking = next(name for name in fits if name not in laws)
-        wanted = f"a gear of which {LEAST_ROWS} rows of the catalogue have each figure"
-        raise InputError("catalogue", "gear", wanted, f"'{gear}', of which too few have the {lacking}")
-    return ActuatorLaw(**laws)
 
 
 _RATED, _PEAK, _MASS = attrgetter("rated_torque_n_m"), attrgetter("peak_torque_n_m"), attrgetter("mass_kg")

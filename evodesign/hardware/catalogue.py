@@ -41,8 +41,8 @@ class Gear(StrEnum):
 class CatalogueRow(Record, frozen=True, kw_only=True):
     """An actuator of the catalogue, with the keys of `data/actuators.toml`; None: the source does not say.
 
-    Torques are at the output [N m]: rated for ever, peak for seconds; of the gear, repeated peak at starts and
-    stops, momentary peak in collisions, ratcheting where a strain wave gear's teeth skip. They rise in this
+    Torques are at the output [N m]: rated for ever, repeated peak of the gear at starts and stops, peak for
+    seconds, momentary peak in collisions, ratcheting where a strain wave gear's teeth skip. They rise in this
     order. `output_inertia_kg_m2` is the rotor's as seen at the output, `friction_torque_n_m` what turns the
     output without current, `max_speed_rpm` the highest speed allowed where none without load is given, and
     the thermal figures are those of the winding against the air. `in_default_law` marks the rows that
@@ -156,6 +156,6 @@ def catalogue_sources() -> Mapping[str, str]:
     return _file().sources
 
 
-def gearheads(gear: Gear) -> tuple[Gearhead, ...]:
+def gearheads(gear: Gear | str) -> tuple[Gearhead, ...]:
     """The gears by themselves of a kind."""
-    return tuple(each for each in _file().gearheads if each.gear is gear)
+    return tuple(each for each in _file().gearheads if each.gear == gear)

@@ -88,7 +88,8 @@ class WallTable(Table, frozen=True):
 class ActuatorTable(Table, frozen=True):
     """`[[design.actuator]]`: what drives a group of joints.
 
-    Any rated torque within bounds, a model, or as many times what is asked of it as `margin` bounds.
+    Any rated torque within bounds, a model, or as many times what is asked of it as `margin` bounds. One that
+    is no model follows the law of its `gear`.
     """
 
     name: Name
@@ -96,6 +97,7 @@ class ActuatorTable(Table, frozen=True):
     rated_torque_n_m: tuple[Positive, Positive] | None = None
     models: tuple[Name, ...] | None = None
     margin: tuple[Margin, Margin] | None = None
+    gear: Name | None = None
 
 
 class Feet(StrEnum):
