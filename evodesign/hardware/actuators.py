@@ -103,11 +103,13 @@ class PowerLaw:
     Args:
         factor, exponent: of the law.
         scatter: the factor by which one standard deviation of the figures lies above the law, or below it.
+        count: of figures that it was fitted to.
     """
 
     factor: float
     exponent: float
     scatter: float
+    count: int
 
     def __call__(self, x: Scalar) -> Scalar:
         """The y [of the law's unit] of a number or expression."""
@@ -128,7 +130,7 @@ def fitted_power_law(x: Sequence[float], y: Sequence[float], exponent: float | N
     offset = float(np.mean(b - slope * a))
     left = b - slope * a - offset
     deviation = math.sqrt(float(left @ left) / (len(a) - unknowns))
-    return PowerLaw(math.exp(offset), slope, math.exp(deviation))
+    return PowerLaw(math.exp(offset), slope, math.exp(deviation), len(a))
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,10 +180,11 @@ class ActuatorLaw:
 def actuator_law(gear: Gear | str = Gear.PLANETARY) -> ActuatorLaw:
     """The law of the catalogue's actuators with a kind of gear.
 
-    Each figure is fitted to the rows of the kind that have it. Of strain wave drives, two makers give motor
-    constants and three reflected inertias, one of them both, and most speeds are the highest that the gear
-    may turn. The planetary law, which problems use unless they say otherwise, is fitted to the rows marked
-    `in_default_law`, but for diameter and length: rows can be added without moving the rest of it.
+    Each figure is fitted to the rows of the kind that have it, mass and housing to those with their drive in
+    them. Of strain wave drives, two makers give motor constants and three reflected inertias, one of them
+    both, and most speeds are the highest that the gear may turn. The planetary law, which problems use unless
+    they say otherwise, is fitted to the rows marked `in_default_law`, but for diameter and length: rows can
+    be added without moving the rest of it.
 
     Raises:
         InputError: no kind of gear, or one of which fewer than four rows have one of the figures.
@@ -203,17 +206,19 @@ def _laws(gear: Gear | str) -> dict[str, PowerLaw | None]:
     """The fields of the law of a gear; None of which too few rows have the figures."""
     rows = [row for row in catalogue().values() if row.gear == gear]
     named = [row for row in rows if row.in_default_law] or rows
+    whole = [row for row in rows if not row.separate_drive]
+    housed = [row for row in whole if row.housing]
     stiffness = [each.relative_stiffness for each in gearheads(gear)]
     enough = len(stiffness) >= LEAST_ROWS
     return {
         "peak": _fit(named, _RATED, _PEAK, exponent=1.0),
-        "mass": _fit(named, _PEAK, _MASS),
+        "mass": _fit([row for row in named if row in whole], _PEAK, _MASS),
         "motor_constant": _fit(named, _RATED, attrgetter("motor_constant")),
         "inertia": _fit(named, _RATED, attrgetter("reflected_inertia")),
         "speed": _fit(named, _RATED, attrgetter("speed")),
         "stiffness": fitted_power_law([1.0] * len(stiffness), stiffness, 1.0) if enough else None,
-        "diameter": _fit([row for row in rows if row.housing], _MASS, attrgetter("diameter_m")),
-        "length": _fit([row for row in rows if row.housing], _MASS, attrgetter("length_m")),
+        "diameter": _fit(housed, _MASS, attrgetter("diameter_m")),
+        "length": _fit(housed, _MASS, attrgetter("length_m")),
     }
 
 

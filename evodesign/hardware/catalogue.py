@@ -45,8 +45,9 @@ class CatalogueRow(Record, frozen=True, kw_only=True):
     seconds, momentary peak in collisions, ratcheting where a strain wave gear's teeth skip. They rise in this
     order. `output_inertia_kg_m2` is the rotor's as seen at the output, `friction_torque_n_m` what turns the
     output without current, `max_speed_rpm` the highest speed allowed where none without load is given, and
-    the thermal figures are those of the winding against the air. `in_default_law` marks the rows that
-    `actuator_law()` is fitted to; `words` quotes the source.
+    the thermal figures are those of the winding against the air. Mass and housing are without the drive where
+    `separate_drive` is true. `in_default_law` marks the rows that `actuator_law()` is fitted to; `words`
+    quotes the source.
     """
 
     model: str
@@ -73,6 +74,7 @@ class CatalogueRow(Record, frozen=True, kw_only=True):
     price_eur: Figure | None = None
     diameter_m: Figure | None = None
     length_m: Figure | None = None
+    separate_drive: bool = False
     in_default_law: bool = False
     words: str = ""
 

@@ -30,23 +30,23 @@ def test_no_source_is_left_that_no_row_has() -> None:
 def test_words_quote_the_figures_of_the_row(row: CatalogueRow) -> None:
     """In the source's units: g or kg, mm, kg cm^2, kg mm^2 or kg m^2, ohms of a phase or of two."""
     quoted = {float(text) for text in re.findall(r"\d*\.?\d+(?:e-?\d+)?", row.words)}
-    given = {
-        row.peak_torque_n_m: [1.0],
-        row.rated_torque_n_m: [1.0],
-        row.repeated_peak_torque_n_m: [1.0],
-        row.momentary_peak_torque_n_m: [1.0],
-        row.ratcheting_torque_n_m: [1.0],
-        row.no_load_speed_rpm: [1.0],
-        row.friction_torque_n_m: [1.0],
-        row.mass_kg: [1.0, 1e3],
-        row.diameter_m: [1e3],
-        row.length_m: [1e3],
-        row.phase_resistance_ohm: [1.0, 2.0],
-        row.rotor_inertia_kg_cm2: [1.0, 1e2, 1e-4],
-        row.output_inertia_kg_m2: [1.0, 1e4],
-        row.ratio: [1.0],
-    }
-    for figure, units in given.items():
+    given = [
+        (row.peak_torque_n_m, [1.0]),
+        (row.rated_torque_n_m, [1.0]),
+        (row.repeated_peak_torque_n_m, [1.0]),
+        (row.momentary_peak_torque_n_m, [1.0]),
+        (row.ratcheting_torque_n_m, [1.0]),
+        (row.no_load_speed_rpm, [1.0]),
+        (row.friction_torque_n_m, [1.0]),
+        (row.mass_kg, [1.0, 1e3]),
+        (row.diameter_m, [1e3]),
+        (row.length_m, [1e3]),
+        (row.phase_resistance_ohm, [1.0, 2.0]),
+        (row.rotor_inertia_kg_cm2, [1.0, 1e2, 1e-4]),
+        (row.output_inertia_kg_m2, [1.0, 1e4]),
+        (row.ratio, [1.0]),
+    ]
+    for figure, units in given:
         wanted = [figure * unit for unit in units if figure is not None]
         near = [pytest.approx(each, rel=1e-9) for each in wanted]
         assert figure is None or any(each == one for each in quoted for one in near), figure
