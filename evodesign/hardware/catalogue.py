@@ -46,8 +46,8 @@ class CatalogueRow(Record, frozen=True, kw_only=True):
     order. `output_inertia_kg_m2` is the rotor's as seen at the output, `friction_torque_n_m` what turns the
     output without current, `max_speed_rpm` the highest speed allowed where none without load is given, and
     the thermal figures are those of the winding against the air. Mass and housing are without the drive where
-    `separate_drive` is true. `in_default_law` marks the rows that `actuator_law()` is fitted to; `words`
-    quotes the source.
+    `separate_drive` is true. `in_default_law` marks the rows that `actuator_law()` is fitted to; `words` has
+    the source's figures in its own units.
     """
 
     model: str
