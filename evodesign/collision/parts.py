@@ -1,6 +1,6 @@
 """Whether the parts of a robot go together: actuators that are bodies, beside each other and in their links.
 
-An actuator is the cylinder of its housing (`hardware.actuators.Mounting`). While all joints are at zero it
+An actuator is the cylinder of its housing (`hardware.mounting.Mounting`). While all joints are at zero it
 keeps clear of
 
     all other actuators

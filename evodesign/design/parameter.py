@@ -20,7 +20,9 @@ from enum import StrEnum
 
 from evodesign.body.material import Material
 from evodesign.body.placement import Scalar
-from evodesign.hardware.actuators import Actuator, Mounting, actuator_among, actuator_law
+from evodesign.hardware.actuators import Actuator, ActuatorLaw, actuator_among, actuator_law
+from evodesign.hardware.catalogue import Gear
+from evodesign.hardware.mounting import Mounting
 from evodesign.records import Parameter, middle_of
 from evodesign.tree.joint_changes import JointChange
 from evodesign.tree.sections import SectionChange
@@ -105,6 +107,7 @@ class DesignParameter:
         changes: of joints, that the value makes.
         sections: of links, whose multiplier the value is.
         mountings: of the actuator at each of its joints; none where it is a ball.
+        gear: of an actuator of any size, whose law it follows.
     """
 
     kind: ParameterKind
@@ -118,6 +121,7 @@ class DesignParameter:
     changes: tuple[JointChange, ...] = ()
     sections: tuple[SectionChange, ...] = ()
     mountings: tuple[Mounting, ...] = ()
+    gear: Gear = Gear.PLANETARY
 
     @property
     def choices(self) -> tuple[float, ...]:
@@ -170,14 +174,19 @@ class DesignParameter:
             logarithmic=self.logarithmic,
         )
 
+    @property
+    def law(self) -> ActuatorLaw:
+        """That an actuator of any size follows."""
+        return actuator_law(self.gear)
+
     def actuator(self, rated: Scalar) -> Actuator:
         """The actuator of a rated torque [N m], a number or an expression.
 
         One that is sized holds whatever is asked of it, so that its size can be told.
         """
         if self.kind is ParameterKind.MARGIN:
-            return replace(actuator_law().at(rated), holds=False)
-        return actuator_among(self.models, rated) if self.models else actuator_law().at(rated)
+            return replace(self.law.at(rated), holds=False)
+        return actuator_among(self.models, rated) if self.models else self.law.at(rated)
 
     def actuators(self, rated: Scalar) -> dict[str, Actuator]:
         """The actuator of a rated torque [N m] at each of the joints, by name."""

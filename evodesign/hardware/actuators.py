@@ -1,4 +1,4 @@
-"""Actuators: a catalogue of what can be ordered, and laws that tell what lies between its sizes.
+"""Actuators, and laws that tell what lies between the sizes of those that can be ordered.
 
 An actuator is motor, gear, housing and drive in one piece. Its figures are those at its output.
 
@@ -8,74 +8,48 @@ An actuator is motor, gear, housing and drive in one piece. Its figures are thos
                         mass     = a peak^b
                         K, J, speed = a rated^b
                         windup   = mean ratio x rated   [N m/rad]
+                        diameter, length = a mass^b
 
 with k_t the torque at the output per ampere (rms) of phase current, R the resistance of one of three phases
 in star connection, N the gear's ratio. The gear's losses are in k_t; that its friction helps a motor to hold
 is left out, so the loss is rather too high.
 
-The laws are least squares in the logarithms over the planetary actuators of ratio 12 and above whose maker
-gives all figures; windup is that of gears by themselves, as nobody gives it for whole actuators. What a
-maker does not give of a model is the law's at its torque.
+The laws are least squares in the logarithms, one for each kind of gear. That of planetary gears is fitted to
+seven actuators of ratio 12 and above whose maker gives all figures. Windup is that of gears by themselves, as
+nobody gives it for whole actuators. What a maker does not give of a model is the law's at its torque.
 
-Beyond 300 lines: rows, laws and what is chosen among them have the same figures.
+Beyond 300 lines: laws and what is chosen among rows have the same figures.
 
-Source: `data/actuators.toml`, each row with its own; the form of the laws: Budinger et al. 2012 (scaling laws
-of actuators), Wensing et al. 2017 (reflected inertia).
+Source: the catalogue (`hardware.catalogue`), each row with its own; the form of the laws: Budinger et al.
+2012 (scaling laws of actuators), Wensing et al. 2017 (reflected inertia).
 """
 
 from __future__ import annotations
 
 import math
-import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from functools import cache
-from importlib import resources
 from itertools import pairwise
-from typing import Annotated, Any
+from operator import attrgetter
+from typing import Any
 
-import msgspec
 import numpy as np
-from msgspec import Meta
 
-from evodesign.body.placement import Placement, Scalar, Vector, cross, dot, scale, transpose
-from evodesign.body.shape import Cylinder, Solid, Sphere
-from evodesign.records import Record
+from evodesign.body.placement import Placement, Scalar, Vector
+from evodesign.body.shape import Solid, Sphere
+from evodesign.errors import InputError
+from evodesign.hardware.catalogue import CatalogueRow, Gear, catalogue, gearheads
+from evodesign.hardware.mounting import Mounting
 
-LEAST_RATIO = 12.0
-"""Ratio of the gear from which on an actuator belongs to the law's family: two planetary stages."""
+LEAST_ROWS = 4
+"""Rows of the catalogue that have a figure, from which on there is a law of it."""
 
 DENSITY = 3000.0
 """Mass over volume of an actuator [kg/m^3]: RS04, 1.42 kg in a cylinder of 110 mm by 50 mm."""
 
 SLENDERNESS = 50.0 / 110.0
 """Length over diameter of a housing whose maker does not give them: that of RS04."""
-
-ARC_MINUTE = math.pi / (180.0 * 60.0)
-
-Figure = Annotated[float, Meta(gt=0.0)]
-
-
-class Mount(StrEnum):
-    """How an actuator sits about its joint's axis: in the joint, or on one side of it."""
-
-    INLINE = "inline"
-    OFFSET = "offset"
-
-
-@dataclass(frozen=True, slots=True)
-class Mounting:
-    """Where the cylinder of an actuator lies about its joint's axis, in the link before the joint.
-
-    Args:
-        share: of its length, by which its middle lies along the axis: 0 in the joint, -0.5 or 0.5 for a
-            cylinder that ends there.
-        across: a vector across the axis, or nearly, in the joint's frame.
-    """
-
-    share: float
-    across: Vector
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,87 +101,6 @@ class Actuator:
         return torque / self.stiffness
 
 
-class CatalogueRow(Record, frozen=True, kw_only=True):
-    """An actuator of the catalogue, with the keys of `data/actuators.toml`; None: the source does not say."""
-
-    model: str
-    mass_kg: Figure
-    peak_torque_n_m: Figure
-    source: str
-    rated_torque_n_m: Figure | None = None
-    ratio: Figure | None = None
-    torque_constant_n_m_per_a: Figure | None = None
-    phase_resistance_ohm: Figure | None = None
-    rotor_inertia_kg_cm2: Figure | None = None
-    no_load_speed_rpm: Figure | None = None
-    price_eur: Figure | None = None
-    diameter_m: Figure | None = None
-    length_m: Figure | None = None
-
-    @property
-    def housing(self) -> tuple[float, float] | None:
-        """Diameter and length [m]."""
-        given = self.diameter_m, self.length_m
-        return None if given[0] is None or given[1] is None else (given[0], given[1])
-
-    @property
-    def motor_constant(self) -> float | None:
-        """K = k_t / sqrt(3 R) [N m/W^0.5]."""
-        if self.torque_constant_n_m_per_a is None or self.phase_resistance_ohm is None:
-            return None
-        return self.torque_constant_n_m_per_a / math.sqrt(3.0 * self.phase_resistance_ohm)
-
-    @property
-    def reflected_inertia(self) -> float | None:
-        """N^2 J_rotor [kg m^2]."""
-        if self.ratio is None or self.rotor_inertia_kg_cm2 is None:
-            return None
-        return self.ratio**2 * self.rotor_inertia_kg_cm2 * 1e-4
-
-    @property
-    def speed(self) -> float | None:
-        """Without load [rad/s]."""
-        return None if self.no_load_speed_rpm is None else self.no_load_speed_rpm * math.tau / 60.0
-
-
-class Gearhead(Record, frozen=True):
-    """A gear by itself: the torque that it can carry for ever, and its stiffness."""
-
-    model: str
-    rated_torque_n_m: Figure
-    stiffness_n_m_per_arcmin: Figure
-    source: str
-
-    @property
-    def relative_stiffness(self) -> float:
-        """Stiffness per rated torque [1/rad]."""
-        return self.stiffness_n_m_per_arcmin / ARC_MINUTE / self.rated_torque_n_m
-
-
-class Catalogue(Record, frozen=True):
-    """The whole data file."""
-
-    sources: dict[str, str]
-    actuators: tuple[CatalogueRow, ...]
-    gearheads: tuple[Gearhead, ...]
-
-
-@cache
-def _file() -> Catalogue:
-    text = resources.files("evodesign.hardware").joinpath("data", "actuators.toml").read_text("utf-8")
-    return msgspec.convert(tomllib.loads(text), Catalogue)
-
-
-def catalogue() -> Mapping[str, CatalogueRow]:
-    """The actuators that every problem knows, by model."""
-    return {row.model: row for row in _file().actuators}
-
-
-def catalogue_sources() -> Mapping[str, str]:
-    """What the rows' sources stand for."""
-    return _file().sources
-
-
 @dataclass(frozen=True, slots=True)
 class PowerLaw:
     """The law y = factor x^exponent.
@@ -215,11 +108,13 @@ class PowerLaw:
     Args:
         factor, exponent: of the law.
         scatter: the factor by which one standard deviation of the figures lies above the law, or below it.
+        count: of figures that it was fitted to.
     """
 
     factor: float
     exponent: float
     scatter: float
+    count: int
 
     def __call__(self, x: Scalar) -> Scalar:
         """The y [of the law's unit] of a number or expression."""
@@ -240,7 +135,7 @@ def fitted_power_law(x: Sequence[float], y: Sequence[float], exponent: float | N
     offset = float(np.mean(b - slope * a))
     left = b - slope * a - offset
     deviation = math.sqrt(float(left @ left) / (len(a) - unknowns))
-    return PowerLaw(math.exp(offset), slope, math.exp(deviation))
+    return PowerLaw(math.exp(offset), slope, math.exp(deviation), len(a))
 
 
 @dataclass(frozen=True, slots=True)
@@ -254,6 +149,7 @@ class ActuatorLaw:
         inertia: reflected [kg m^2], by rated torque [N m].
         speed: [rad/s] by rated torque [N m].
         stiffness: [N m/rad] by rated torque [N m].
+        diameter, length: of the housing [m], by mass [kg].
     """
 
     peak: PowerLaw
@@ -262,40 +158,90 @@ class ActuatorLaw:
     inertia: PowerLaw
     speed: PowerLaw
     stiffness: PowerLaw
+    diameter: PowerLaw
+    length: PowerLaw
 
     def at(self, rated: Scalar) -> Actuator:
         """The actuator of a rated torque [N m], a number or an expression."""
         peak = self.peak(rated)
+        mass = self.mass(peak)
         return Actuator(
             rated=rated,
             peak=peak,
-            mass=self.mass(peak),
+            mass=mass,
             motor_constant=self.motor_constant(rated),
             inertia=self.inertia(rated),
             stiffness=self.stiffness(rated),
             speed=self.speed(rated),
+            housing=self.housing(mass),
         )
+
+    def housing(self, mass: Scalar) -> tuple[Scalar, Scalar]:
+        """Diameter and length [m] of an actuator of a mass [kg], a number or an expression."""
+        return self.diameter(mass), self.length(mass)
 
 
 @cache
-def actuator_law() -> ActuatorLaw:
-    """The law of the catalogue's planetary actuators of ratio 12 and above whose maker gives all figures."""
-    rows = [row for row in _file().actuators if _is_complete(row) and (row.ratio or 0.0) >= LEAST_RATIO]
-    rated = [float(row.rated_torque_n_m or 0.0) for row in rows]
-    gears = _file().gearheads
-    return ActuatorLaw(
-        peak=fitted_power_law(rated, [row.peak_torque_n_m for row in rows], exponent=1.0),
-        mass=fitted_power_law([row.peak_torque_n_m for row in rows], [row.mass_kg for row in rows]),
-        motor_constant=fitted_power_law(rated, [row.motor_constant or 0.0 for row in rows]),
-        inertia=fitted_power_law(rated, [row.reflected_inertia or 0.0 for row in rows]),
-        speed=fitted_power_law(rated, [row.speed or 0.0 for row in rows]),
-        stiffness=fitted_power_law([1.0] * len(gears), [gear.relative_stiffness for gear in gears], 1.0),
-    )
+def actuator_law(gear: Gear | str = Gear.PLANETARY) -> ActuatorLaw:
+    """The law of the catalogue's actuators with a kind of gear.
+
+    Each figure is fitted to the rows of the kind that have it, mass and housing to those with their drive in
+    them. Of strain wave drives, two makers give motor constants and three reflected inertias, one of them
+    both, and most speeds are the highest that the gear may turn. The planetary law, which problems use unless
+    they say otherwise, is fitted to the rows marked `in_default_law`, but for diameter and length: rows can
+    be added without moving the rest of it.
+
+    Raises:
+        InputError: no kind of gear, or one of which fewer than four rows have one of the figures.
+    """
+    laws = _laws(gear)
+    if any(law is None for law in laws.values()):
+        wanted = f"a gear of which {LEAST_ROWS} rows have each figure: {', '.join(gears_with_a_law())}"
+        raise InputError("catalogue", "gear", wanted, f"'{gear}'")
+    return ActuatorLaw(**{name: law for name, law in laws.items() if law is not None})
 
 
-def _is_complete(row: CatalogueRow) -> bool:
-    known = (row.rated_torque_n_m, row.motor_constant, row.reflected_inertia, row.speed)
-    return None not in known
+@cache
+def gears_with_a_law() -> tuple[str, ...]:
+    """The kinds of gear of which the catalogue has rows enough."""
+    return tuple(kind.value for kind in Gear if None not in _laws(kind).values())
+
+
+def _laws(gear: Gear | str) -> dict[str, PowerLaw | None]:
+    """The fields of the law of a gear; None of which too few rows have the figures."""
+    rows = [row for row in catalogue().values() if row.gear == gear]
+    named = [row for row in rows if row.in_default_law] or rows
+    whole = [row for row in rows if not row.separate_drive]
+    housed = [row for row in whole if row.housing]
+    stiffness = [each.relative_stiffness for each in gearheads(gear)]
+    enough = len(stiffness) >= LEAST_ROWS
+    return {
+        "peak": _fit(named, _RATED, _PEAK, exponent=1.0),
+        "mass": _fit([row for row in named if row in whole], _PEAK, _MASS),
+        "motor_constant": _fit(named, _RATED, attrgetter("motor_constant")),
+        "inertia": _fit(named, _RATED, attrgetter("reflected_inertia")),
+        "speed": _fit(named, _RATED, attrgetter("speed")),
+        "stiffness": fitted_power_law([1.0] * len(stiffness), stiffness, 1.0) if enough else None,
+        "diameter": _fit(housed, _MASS, attrgetter("diameter_m")),
+        "length": _fit(housed, _MASS, attrgetter("length_m")),
+    }
+
+
+_RATED, _PEAK, _MASS = attrgetter("rated_torque_n_m"), attrgetter("peak_torque_n_m"), attrgetter("mass_kg")
+
+
+def _fit(
+    rows: Sequence[CatalogueRow],
+    x: Callable[[CatalogueRow], float | None],
+    y: Callable[[CatalogueRow], float | None],
+    exponent: float | None = None,
+) -> PowerLaw | None:
+    """The law of the rows that have both figures; None of fewer than four."""
+    pairs = [(x(row), y(row)) for row in rows]
+    known = [(a, b) for a, b in pairs if a is not None and b is not None]
+    if len(known) < LEAST_ROWS:
+        return None
+    return fitted_power_law([a for a, _ in known], [b for _, b in known], exponent)
 
 
 def actuator_of_row(row: CatalogueRow, law: ActuatorLaw | None = None) -> Actuator:
@@ -303,9 +249,10 @@ def actuator_of_row(row: CatalogueRow, law: ActuatorLaw | None = None) -> Actuat
 
     Args:
         row: of the catalogue, or a user's own.
-        law: that of the catalogue if left out.
+        law: that of the row's gear in the catalogue if left out, or of planetary gears.
     """
-    law = actuator_law() if law is None else law
+    if law is None:
+        law = actuator_law(Gear.STRAIN_WAVE if row.gear is Gear.STRAIN_WAVE else Gear.PLANETARY)
     rated = row.rated_torque_n_m
     if rated is None:
         rated = row.peak_torque_n_m / law.peak.factor
@@ -315,7 +262,7 @@ def actuator_of_row(row: CatalogueRow, law: ActuatorLaw | None = None) -> Actuat
         "motor_constant": row.motor_constant,
         "inertia": row.reflected_inertia,
         "speed": row.speed,
-        "housing": row.housing,
+        "housing": row.housing or law.housing(row.mass_kg),
     }
     known: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     return replace(law.at(rated), model=row.model, price=row.price_eur, **known)
@@ -357,10 +304,4 @@ def mounted_solid(actuator: Actuator, link_from_joint: Placement, axis: Vector) 
     if mounting is None:
         radius = (actuator.mass * (3.0 / (4.0 * math.pi * DENSITY))) ** (1.0 / 3.0)
         return Solid(Sphere(radius), Placement(translation=link_from_joint.translation), DENSITY)
-    diameter, length = actuator.size
-    shape = Cylinder(diameter / 2.0, length)
-    first = cross(axis, mounting.across)
-    first = scale(dot(first, first) ** -0.5, first)
-    turn = transpose((first, cross(axis, first), axis))
-    place = Placement(rotation=turn, translation=scale(mounting.share * length, axis))
-    return Solid(shape, link_from_joint @ place, actuator.mass / shape.volume)
+    return mounting.housing(actuator.mass, actuator.size, link_from_joint, axis)

@@ -1,8 +1,9 @@
 """Hardware of a problem file: actuators of joints, walls of links.
 
-An actuator's rated torque lies within bounds, or it is one of some models, from the catalogue and the
-problem's own `[[actuator]]` tables together. A wall has a fixed thickness or bounds of it; its material is
-named, or chosen by a density parameter of the same links. Every contradiction is refused.
+An actuator's rated torque lies within bounds and it follows the law of its gear, or it is one of some models,
+from the catalogue and the problem's own `[[actuator]]` tables together. A wall has a fixed thickness or
+bounds of it; its material is named, or chosen by a density parameter of the same links. Every contradiction
+is refused.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ from evodesign.body.material import Material
 from evodesign.design.parameter import DesignParameter, ParameterKind
 from evodesign.design.walls import Wall
 from evodesign.errors import InputError, nearest_name
-from evodesign.hardware.actuators import Actuator, CatalogueRow, actuator_of_row, catalogue
+from evodesign.hardware.actuators import Actuator, actuator_of_row, gears_with_a_law
+from evodesign.hardware.catalogue import CatalogueRow, Gear, catalogue
 from evodesign.problem.design_space import known_materials
 from evodesign.problem.design_table import ActuatorTable, WallTable
 from evodesign.problem.file import ProblemFile
@@ -58,6 +60,9 @@ def _known_actuators(tables: ProblemFile, source: ProblemSource) -> Mapping[str,
         if row.rated_torque_n_m is not None and row.rated_torque_n_m > row.peak_torque_n_m:
             wanted = f"at most the peak torque, {row.peak_torque_n_m:g}"
             raise InputError(source.path, f"{key}.rated_torque_n_m", wanted, f"{row.rated_torque_n_m:g}")
+        if list(row.torques) != sorted(row.torques):
+            wanted = "rated, repeated peak, peak, momentary peak and ratcheting torque that rise"
+            raise InputError(source.path, key, wanted, ", ".join(f"{torque:g}" for torque in row.torques))
         known[row.model] = row
     return known
 
@@ -72,10 +77,24 @@ def _actuator(
     for kind, way in ((ParameterKind.ACTUATOR, "rated_torque_n_m"), (ParameterKind.MARGIN, "margin")):
         if way in given:
             ends = _rising(getattr(table, way), f"{key}.{way}", source)
-            return DesignParameter(kind, table.name, (), *ends, joints=table.joints)
+            gear = _gear(table.gear, f"{key}.gear", source)
+            return DesignParameter(kind, table.name, (), *ends, joints=table.joints, gear=gear)
+    if table.gear is not None:
+        wanted = "no gear beside models, which have their own"
+        raise InputError(source.path, f"{key}.gear", wanted, f"'{table.gear}'")
     models = _models(table.models or (), f"{key}.models", source, known)
     ends = (models[0].rated, models[-1].rated)
     return DesignParameter(ParameterKind.ACTUATOR, table.name, (), *ends, joints=table.joints, models=models)
+
+
+def _gear(name: str | None, key: str, source: ProblemSource) -> Gear:
+    """The kind of gear whose law an actuator follows."""
+    if name is None:
+        return Gear.PLANETARY
+    kinds = gears_with_a_law()
+    if name not in kinds:
+        raise InputError(source.path, key, f"a gear with a law: {', '.join(kinds)}", f"'{name}'")
+    return Gear(name)
 
 
 def _rising(pair: tuple[float, float], key: str, source: ProblemSource) -> tuple[float, float]:

@@ -8,7 +8,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-from evodesign.hardware.actuators import Mount
+from evodesign.hardware.mounting import Mount
 from evodesign.problem.table import Name, Point, Positive, Share, Table
 
 Margin = Annotated[float, Meta(ge=1.0)]
@@ -89,8 +89,9 @@ class WallTable(Table, frozen=True):
 class ActuatorTable(Table, frozen=True):
     """`[[design.actuator]]`: what drives a group of joints.
 
-    Any rated torque within bounds, a model, or as many times what is asked of it as `margin` bounds. With
-    `mount` it is a body, the cylinder of its housing about each joint's axis; left out, a ball of its mass.
+    Any rated torque within bounds, a model, or as many times what is asked of it as `margin` bounds. One that
+    is no model follows the law of its `gear`. With `mount` it is a body, the cylinder of its housing about
+    each joint's axis; left out, a ball of its mass.
     """
 
     name: Name
@@ -99,6 +100,7 @@ class ActuatorTable(Table, frozen=True):
     models: tuple[Name, ...] | None = None
     margin: tuple[Margin, Margin] | None = None
     mount: Mount | None = None
+    gear: Name | None = None
 
 
 class Feet(StrEnum):

@@ -15,7 +15,7 @@ import msgspec
 from msgspec import Meta
 
 from evodesign.body.placement import Matrix, Vector
-from evodesign.hardware.actuators import CatalogueRow
+from evodesign.hardware.catalogue import CatalogueRow
 from evodesign.human.anthropometry_tables import Sex, ShoulderWidth
 from evodesign.human.measured_posture import HumanPosture
 from evodesign.human.population import PopulationSex

@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from evodesign.body.inertia import total
 from evodesign.body.placement import Placement, Vector, add, dot, rotate, scale
 from evodesign.errors import InputError
-from evodesign.hardware.actuators import Mount, Mounting
+from evodesign.hardware.mounting import Mount, Mounting
 from evodesign.problem.design_table import ActuatorTable
 from evodesign.records import ProblemSource
 from evodesign.tree.frames import link_frames

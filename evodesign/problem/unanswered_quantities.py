@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from evodesign.errors import InputError
-from evodesign.hardware.actuators import catalogue
+from evodesign.hardware.catalogue import catalogue
 from evodesign.hardware.structure import STRENGTHS
 from evodesign.human.back import FLEXION, LUMBAR
 from evodesign.mechanics.agent import Agent

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from evodesign.body.placement import scale
 from evodesign.design.space import DesignSpace
-from evodesign.hardware.actuators import Actuator, actuator_law
+from evodesign.hardware.actuators import Actuator, ActuatorLaw, actuator_law
 from evodesign.mechanics.added_mass import AddedMasses, joint_slopes
 from evodesign.mechanics.agent import ROBOT, Agent
 from evodesign.mechanics.floating_base import Configuration, FloatingBody
@@ -54,6 +54,7 @@ class Demand:
 
     Args:
         groups: names.
+        laws: of their actuators.
         members: of each group, the columns of its joints in `torques`.
         joints: names, one per column.
         sizes: rated torques for which the postures were found [N m].
@@ -63,6 +64,7 @@ class Demand:
     """
 
     groups: tuple[str, ...]
+    laws: tuple[ActuatorLaw, ...]
     members: tuple[tuple[int, ...], ...]
     joints: tuple[str, ...]
     sizes: Mapping[str, float]
@@ -83,8 +85,12 @@ class Demand:
         return {name: float(torques[list(columns)].max(initial=0.0)) for name, columns in pairs}
 
     def _masses(self, sizes: Mapping[str, float]) -> Array:
-        law = actuator_law()
-        return np.asarray(law.mass(law.peak(np.array([sizes[name] for name in self.groups]))))
+        rated = np.array([sizes[name] for name in self.groups])
+        masses = np.empty(len(rated))
+        for law in dict.fromkeys(self.laws):
+            chosen = [each == law for each in self.laws]
+            masses[chosen] = law.mass(law.peak(rated[chosen]))
+        return masses
 
 
 def demand_of(
@@ -106,11 +112,12 @@ def demand_of(
     if not all(solution.solved for solution in cases):
         return "a height is not held"
     parameters, joints = [space.parameters[place] for place in space.margins], robot.body.joints
-    law = actuator_law()
-    body = _with_actuators(
-        robot, [space.parameters[place].actuators(values[place]) for place in space.margins]
-    )
-    share = 1.0 / float(law.peak(1.0))
+    laws = tuple(parameter.law for parameter in parameters)
+    sized = [each.actuators(values[place]) for each, place in zip(parameters, space.margins, strict=True)]
+    body = _with_actuators(robot, sized)
+    of_joint = {joint: each.law for each in parameters for joint in each.joints}
+    peaks = [float(of_joint.get(name, actuator_law()).peak(1.0)) for name in joints]
+    shares = 1.0 / np.array(peaks)
     rows = _lift_rows(cases, joints)
     alone = []
     near = robot.near if before is None else before.alone
@@ -119,15 +126,17 @@ def demand_of(
         if found.reason:
             return found.reason
         alone.append(found)
-        rows.append([case.factor * share * found.torques[name] for name in joints])
+        asked = zip(shares.tolist(), joints, strict=True)
+        rows.append([case.factor * share * found.torques[name] for share, name in asked])
     places = {name: place for place, name in enumerate(joints)}
     return Demand(
         groups=tuple(each.name for each in parameters),
+        laws=laws,
         members=tuple(tuple(places[joint] for joint in each.joints) for each in parameters),
         joints=joints,
         sizes={each.name: values[place] for each, place in zip(parameters, space.margins, strict=True)},
         torques=np.array(rows),
-        slopes=_slopes(robot, body, cases, alone, share) if before is None else before.slopes,
+        slopes=_slopes(robot, body, cases, alone, shares) if before is None else before.slopes,
         alone=tuple(alone),
     )
 
@@ -160,7 +169,7 @@ def _slopes(
     body: FloatingBody,
     cases: Sequence[CaseSolution],
     alone: Sequence[StanceTorques],
-    share: float,
+    shares: Array,
 ) -> Array:
     """[N m/kg], shape (cases, joints, groups); a case of a lift has the same under all disturbances."""
     soles, slopes = robot.agent.foot_frames, []
@@ -173,5 +182,6 @@ def _slopes(
         rows = robot.added.rows(body, state.coordinates)
         slopes += [joint_slopes(rows, feet, body.order)] * (1 + len(instant.disturbed))
     for case, found in zip(robot.stances, alone, strict=True):
-        slopes.append(case.factor * share * stance_slopes(body, case, found, robot.added))
+        of_case = stance_slopes(body, case, found, robot.added)
+        slopes.append((case.factor * shares)[:, np.newaxis] * of_case)
     return np.array(slopes)

@@ -18,6 +18,7 @@ from evodesign.evaluation.gradients import assessed_gradients
 from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.evaluation.sizing import BOUNDS
 from evodesign.hardware.actuators import actuator_law
+from evodesign.hardware.catalogue import Gear
 from evodesign.mechanics.agent import ROBOT
 from evodesign.mechanics.stance_case import StanceCase
 from evodesign.posture.precompute.precomputed import Precomputed
@@ -84,6 +85,29 @@ def test_every_actuator_is_its_margin_times_what_is_asked_of_it(result: DesignRe
         assert rated == pytest.approx([margin * asked] * len(joints), rel=1e-4), name
     assert result.values == DESIGN
     assert result.rated[:2] == DESIGN[:2]
+
+
+def test_a_group_with_another_gear_is_sized_and_weighed_by_its_law(
+    sized: DesignProblem, known: Precomputed, result: DesignResult
+) -> None:
+    """Knees with strain wave drives: heavier, and larger for the squat, as their peak is nearer to rated."""
+    parameters = (*sized.space.parameters[:-1], replace(sized.space.parameters[-1], gear=Gear.STRAIN_WAVE))
+    other = Evaluator(replace(sized, space=DesignSpace(parameters)), known).solve(DESIGN)
+    assert other.standing is not None
+    ((_, squat),) = other.standing.torques(other.tree)
+    law, usual = actuator_law("strain_wave"), actuator_law()
+    knee, elbow = actuators_of(other.tree)["l_knee"], actuators_of(other.tree)["l_elbow"]
+    asked = 2.0 * max(abs(squat.torques[joint]) for joint in GROUPS["knee"])
+    assert knee.peak == pytest.approx(DESIGN[4] * asked, rel=1e-4)
+    assert knee.rated == pytest.approx(float(knee.peak / law.peak(1.0)), rel=1e-12)
+    assert knee.mass == pytest.approx(float(law.mass(knee.peak)), rel=1e-12)
+    assert elbow.mass == pytest.approx(float(usual.mass(elbow.peak)), rel=1e-12)
+    assert knee.rated > actuators_of(result.tree)["l_knee"].rated
+    assert other.demand is not None
+    heavier = dict(other.demand.sizes)
+    heavier["margin.knee"] *= 1.05
+    before, after = (other.demand.at(sizes)["margin.elbow"] for sizes in (other.demand.sizes, heavier))
+    assert after == pytest.approx(before, rel=1e-9)
 
 
 def test_legs_are_sized_by_the_squat_and_arms_by_the_lift(result: DesignResult) -> None:

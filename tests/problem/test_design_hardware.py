@@ -69,6 +69,16 @@ def test_a_rated_torque_has_a_logarithmic_scale() -> None:
     assert model_json(problem)["parameters"][-1]["joints"] == ["l_shoulder", "r_shoulder"]
 
 
+@pytest.mark.parametrize("way", ["rated_torque_n_m = [2.0, 32.0]\n", "margin = [1.0, 4.0]\n"])
+def test_an_actuator_of_any_size_follows_the_law_of_its_gear(way: str) -> None:
+    (parameter,) = (p for p in small(SHOULDER + way + 'gear = "strain_wave"\n').space.parameters if p.joints)
+    (usual,) = (p for p in small(SHOULDER + way).space.parameters if p.joints)
+    for each, gear in ((parameter, "strain_wave"), (usual, "planetary")):
+        actuator, law = each.actuator(20.0), actuator_law(gear)
+        assert (actuator.mass, actuator.motor_constant) == (law.at(20.0).mass, law.motor_constant(20.0))
+        assert each.law == law
+
+
 def test_models_are_choices_the_weakest_first_with_their_own_figures() -> None:
     problem = small(SHOULDER + MODELS + OWN)
     record, tree = problem.space.records[-1], problem.scene.robot.tree
@@ -161,6 +171,16 @@ def test_designs_name_torques_walls_and_models() -> None:
         (SHOULDER + SIZES + SPIN.replace('["spin"]', '["l_shoulder"]') + SIZES, ["a joint in one actuator"]),
         (SHOULDER.replace("l_shoulder", "l_sholder") + SIZES, ["joints[0]", "did you mean 'l_shoulder'?"]),
         (SHOULDER + "margin = [0.5, 2.0]\n", ["design.actuator[0].margin", ">= 1.0"]),
+        (
+            SHOULDER + SIZES + 'gear = "cycloidal"\n',
+            ["design.actuator[0].gear", "a gear with a law: planetary, strain_wave", "'cycloidal'"],
+        ),
+        (SHOULDER + SIZES + 'gear = "worm"\n', ["design.actuator[0].gear", "'worm'"]),
+        (SHOULDER + MODELS + 'gear = "planetary"\n' + OWN, ["gear", "no gear beside models"]),
+        (
+            SHOULDER + MODELS + OWN.replace("[[actuator]]", "[[actuator]]\nratcheting_torque_n_m = 9.0"),
+            ["actuator[0]", "that rise", "12, 30, 9"],
+        ),
         (SHOULDER + SIZES + SQUAT.replace("spin", "spine"), ["load_case[0]", "did you mean 'spin'?"]),
         (SHOULDER + SIZES + SQUAT.replace("60.0", "600.0"), ["joints_deg.l_shoulder", "600"]),
         (SHOULDER + SIZES + SQUAT + SQUAT, ["load_case[1].name", "'squat' twice"]),
