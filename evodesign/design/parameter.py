@@ -22,6 +22,7 @@ from evodesign.body.material import Material
 from evodesign.body.placement import Scalar
 from evodesign.hardware.actuators import Actuator, ActuatorLaw, actuator_among, actuator_law
 from evodesign.hardware.catalogue import Gear
+from evodesign.hardware.heat import Duty
 from evodesign.hardware.mounting import Mounting
 from evodesign.records import Parameter, middle_of
 from evodesign.tree.joint_changes import JointChange
@@ -108,6 +109,7 @@ class DesignParameter:
         sections: of links, whose multiplier the value is.
         mountings: of the actuator at each of its joints; none where it is a ball.
         gear: of an actuator of any size, whose law it follows.
+        duty: in what rhythm an actuator holds; None where nobody says.
     """
 
     kind: ParameterKind
@@ -122,6 +124,7 @@ class DesignParameter:
     sections: tuple[SectionChange, ...] = ()
     mountings: tuple[Mounting, ...] = ()
     gear: Gear = Gear.PLANETARY
+    duty: Duty | None = None
 
     @property
     def choices(self) -> tuple[float, ...]:
@@ -185,8 +188,10 @@ class DesignParameter:
         One that is sized holds whatever is asked of it, so that its size can be told.
         """
         if self.kind is ParameterKind.MARGIN:
-            return replace(self.law.at(rated), holds=False)
-        return actuator_among(self.models, rated) if self.models else self.law.at(rated)
+            found = replace(self.law.at(rated), holds=False)
+        else:
+            found = actuator_among(self.models, rated) if self.models else self.law.at(rated)
+        return found if self.duty is None else replace(found, duty=self.duty)
 
     def actuators(self, rated: Scalar) -> dict[str, Actuator]:
         """The actuator of a rated torque [N m] at each of the joints, by name."""

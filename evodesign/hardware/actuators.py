@@ -40,6 +40,7 @@ from evodesign.body.placement import Placement, Scalar, Vector
 from evodesign.body.shape import Solid, Sphere
 from evodesign.errors import InputError
 from evodesign.hardware.catalogue import CatalogueRow, Gear, catalogue, gearheads
+from evodesign.hardware.heat import Duty
 from evodesign.hardware.mounting import Mounting
 
 LEAST_ROWS = 4
@@ -69,6 +70,7 @@ class Actuator:
         price: [EUR]; None where it is not known.
         housing: diameter and length of the cylinder around it [m]; None where they follow from the mass.
         mounting: where that cylinder lies; None for a ball of its mass in the joint, which is no body.
+        duty: in what rhythm it holds; None where nobody says.
     """
 
     rated: Scalar
@@ -83,6 +85,7 @@ class Actuator:
     price: float | None = None
     housing: tuple[Scalar, Scalar] | None = None
     mounting: Mounting | None = None
+    duty: Duty | None = None
 
     @property
     def size(self) -> tuple[Scalar, Scalar]:
@@ -91,6 +94,11 @@ class Actuator:
             return self.housing
         diameter = (self.mass * (4.0 / (math.pi * DENSITY * SLENDERNESS))) ** (1.0 / 3.0)
         return diameter, SLENDERNESS * diameter
+
+    @property
+    def held(self) -> Scalar:
+        """Torque that its winding bears in its duty, at most the rated one [N m]."""
+        return self.rated if self.duty is None else self.rated * self.duty.derating
 
     def loss(self, torque: Scalar) -> Scalar:
         """Copper loss [W] that holding a torque [N m] takes."""

@@ -35,6 +35,7 @@ SUFFIXES: Mapping[str, str] = {
     "mm": "_mm",
     "EUR": "_eur",
     "J": "_j",
+    "deg C": "_c",
 }
 """How a key ends, by the unit of its quantity."""
 

@@ -18,6 +18,7 @@ from evodesign.design.walls import Wall
 from evodesign.errors import InputError, nearest_name
 from evodesign.hardware.actuators import Actuator, actuator_of_row, gears_with_a_law
 from evodesign.hardware.catalogue import CatalogueRow, Gear, catalogue
+from evodesign.hardware.heat import Duty
 from evodesign.problem.design_space import known_materials
 from evodesign.problem.design_table import ActuatorTable, WallTable
 from evodesign.problem.file import ProblemFile
@@ -33,7 +34,7 @@ def actuator_parameters(tables: ProblemFile, source: ProblemSource, tree: Tree) 
     Raises:
         InputError: an unknown joint or model, a joint twice, or not one way to choose a size.
     """
-    known, seen = _known_actuators(tables, source), dict[str, str]()
+    known, seen, duty = _known_actuators(tables, source), dict[str, str](), duty_of(tables, source)
     found = []
     for position, table in enumerate(tables.design.actuator):
         key = f"design.actuator[{position}]"
@@ -46,8 +47,34 @@ def actuator_parameters(tables: ProblemFile, source: ProblemSource, tree: Tree) 
                 )
             seen[joint] = key
         parameter = _actuator(table, key, source, known)
-        found.append(replace(parameter, mountings=mountings_of(table, key, source, tree)))
+        found.append(replace(parameter, mountings=mountings_of(table, key, source, tree), duty=duty))
     return found
+
+
+def duty_of(tables: ProblemFile, source: ProblemSource) -> Duty | None:
+    """The rhythm of the `[duty]` table; None where there is none.
+
+    Raises:
+        InputError: nothing that works in it, or more seconds of holding than an hour has.
+    """
+    table = tables.duty
+    if table is None:
+        return None
+    if not tables.design.actuator:
+        raise InputError(source.path, "duty", "a [[design.actuator]] that gets warm", "none")
+    if tables.task.lift:
+        raise InputError(source.path, "duty", "loads that are held still", "a [[task.lift]]")
+    if table.hold_s * table.lifts_per_hour > 3600.0:
+        wanted = f"at most {3600.0 / table.lifts_per_hour:g} s, with {table.lifts_per_hour:g} lifts per hour"
+        raise InputError(source.path, "duty.hold_s", wanted, f"{table.hold_s:g} s")
+    return Duty(
+        holds_per_hour=table.lifts_per_hour,
+        hold=table.hold_s,
+        shift=table.shift_h,
+        air=table.air_c,
+        limit=table.winding_limit_c,
+        time_constant=table.thermal_time_constant_s,
+    )
 
 
 def _known_actuators(tables: ProblemFile, source: ProblemSource) -> Mapping[str, CatalogueRow]:

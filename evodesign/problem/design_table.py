@@ -172,6 +172,20 @@ class HardwareTable(Table, frozen=True):
     non_structural_share: Share = 0.3
 
 
+class DutyTable(Table, frozen=True):
+    """`[duty]`: how often and how long the robot holds the load, and what its windings bear.
+
+    `winding_limit_c` is what the rated torque leads to in the end, in air of 25 degrees.
+    """
+
+    lifts_per_hour: Positive
+    hold_s: Positive
+    shift_h: Positive
+    winding_limit_c: Annotated[float, Meta(gt=60.0, le=250.0)]
+    thermal_time_constant_s: Positive
+    air_c: Annotated[float, Meta(ge=-40.0, le=55.0)] = 25.0
+
+
 class AllocationTable(Table, frozen=True):
     """`[[design.allocation]]`: how a design shares the load; see `design.allocation` for the names."""
 

@@ -24,7 +24,7 @@ from evodesign.mechanics.payload import Grasp, GraspDirection
 from evodesign.nlp.method import MethodName
 from evodesign.posture.postures import Symmetry
 from evodesign.problem.baseline_table import BaselineTable
-from evodesign.problem.design_table import DesignTable, HardwareTable, LoadCaseTable, MaterialTable
+from evodesign.problem.design_table import DesignTable, DutyTable, HardwareTable, LoadCaseTable, MaterialTable
 from evodesign.problem.table import Name, NotNegative, Point, Positive, Share, Table
 from evodesign.tasks.lift import FEWEST_KNOTS, LoadProfile
 from evodesign.tree.urdf_read import InertiaRule
@@ -370,6 +370,7 @@ class ProblemFile(Table, frozen=True):
     material: tuple[MaterialTable, ...] = ()
     actuator: tuple[CatalogueRow, ...] = ()
     hardware: HardwareTable = HardwareTable()
+    duty: DutyTable | None = None
     load_case: tuple[LoadCaseTable, ...] = ()
     limits: LimitsTable = LimitsTable()
     search: SearchTable = SearchTable()

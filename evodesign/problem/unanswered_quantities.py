@@ -11,7 +11,13 @@ from evodesign.human.back import FLEXION, LUMBAR
 from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.lumbar_load import has_lumbar_disc
 from evodesign.problem.file import ProblemFile
-from evodesign.quantities.hardware_quantities import COST, NEED_ACTUATORS, NEED_WALLS, OF_BEAMS
+from evodesign.quantities.hardware_quantities import (
+    COST,
+    NEED_ACTUATORS,
+    NEED_WALLS,
+    OF_BEAMS,
+    WINDING,
+)
 from evodesign.quantities.motion_quantities import NEED_LIFTS, OF_HOLDS, SPINE
 from evodesign.quantities.objectives import NEED_PEOPLE, NEED_ROBOTS, NEED_STRENGTHS, split_name
 from evodesign.quantities.person_quantities import BACK
@@ -50,6 +56,8 @@ def _refuse_without_hardware(key: str, name: str, tables: ProblemFile, source: P
     """Refuse a quantity of actuators or walls where there are none, or of another material."""
     if (name == COST or name.endswith(NEED_ACTUATORS)) and not tables.design.actuator:
         raise InputError(source.path, key, f"a [[design.actuator]] for '{name}'", "none")
+    if name.endswith(WINDING) and tables.duty is None:
+        raise InputError(source.path, key, f"a [duty] for '{name}'", "none")
     if name == COST:
         _refuse_without_prices(key, tables, source)
     if name.endswith(NEED_WALLS) and not tables.design.wall:

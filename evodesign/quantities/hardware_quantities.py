@@ -6,6 +6,7 @@
     least_safety_factor  of all links with walls and cases, against yield and buckling
     torque_margin    least rated torque over |tau| of all actuators and cases: 1 for one at its limit
     cost             sum of the actuators' prices [EUR]
+    winding_temperature  of the actuator that gets warmest in the problem's duty (`hardware.heat`) [deg C]
 
 A joint without an actuator takes no part. A scene's robots have the tree of the design here; of several the
 masses and prices are those of one, powers are added up, and the rest is that of the one that has it worst.
@@ -16,6 +17,7 @@ from __future__ import annotations
 import numpy as np
 
 from evodesign.body.placement import Placement
+from evodesign.hardware.heat import RATED_AIR
 from evodesign.mechanics import link_beams
 from evodesign.mechanics.agent import Agent
 from evodesign.posture.results import AgentPosture
@@ -26,6 +28,9 @@ from evodesign.tree.model import Tree
 
 NEED_ACTUATORS = ("holding_power", "actuator_mass", "torque_margin", "hand_deflection")
 """How the names of quantities end that tell nothing where no design chooses actuators."""
+
+WINDING = "winding_temperature"
+"""The quantity that needs a `[duty]`."""
 
 COST = "cost"
 """The quantity that needs models whose prices are known."""
@@ -51,6 +56,38 @@ def power_by_torque(robot: Agent, posture: AgentPosture) -> dict[str, float]:
 
 
 HOLDING_POWER = over_agents(designed, total, "W", copper_loss, by_torque=power_by_torque)
+
+
+def winding_temperature(robot: Agent, posture: AgentPosture) -> float:
+    """Of the actuator that gets warmest where the posture is held in the problem's duty [deg C].
+
+    Without a duty none gets warmer than the air.
+    """
+    return max((value for value, _ in _windings(robot, posture).values()), default=RATED_AIR)
+
+
+def warmest_by_torque(robot: Agent, posture: AgentPosture) -> dict[str, float]:
+    """The warmest winding moves with its joint's torque [K/(N m)]."""
+    windings = _windings(robot, posture)
+    joint = max(windings, key=lambda name: windings[name][0], default="")
+    return {joint: windings[joint][1]} if joint else {}
+
+
+def _windings(robot: Agent, posture: AgentPosture) -> dict[str, tuple[float, float]]:
+    """The temperature of each actuator's winding, and its derivative by the torque."""
+    found = {}
+    for joint, each in actuators_of(robot.tree).items():
+        if each.duty is not None and joint in posture.torques:
+            rated, torque = float(each.rated), posture.torques[joint]
+            share = abs(torque) / rated
+            slope = np.copysign(each.duty.slope(share) / rated, torque)
+            found[joint] = each.duty.temperature(share), float(slope)
+    return found
+
+
+WINDING_TEMPERATURE = over_agents(
+    designed, largest, "deg C", winding_temperature, by_torque=warmest_by_torque
+)
 
 
 def torque_share(robot: Agent, posture: AgentPosture) -> float:

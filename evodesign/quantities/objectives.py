@@ -51,6 +51,8 @@ from evodesign.quantities.hardware_quantities import (
     HOLDING_POWER,
     SAFETY_FACTOR,
     TORQUE_SHARE,
+    WINDING,
+    WINDING_TEMPERATURE,
     actuator_mass,
     cost,
 )
@@ -268,7 +270,7 @@ NEED_PEOPLE = (
 
 NEED_ROBOTS = frozenset(
     {
-        *("robot_torque", "peak_torque", "holding_power", "hand_deflection", POWER, ENERGY),
+        *("robot_torque", "peak_torque", "holding_power", "hand_deflection", WINDING, POWER, ENERGY),
         *("mass", "com_height", "actuator_mass", "cost", "torque_margin", "least_safety_factor"),
         *(BODIES_APART, PARTS_APART, "paper_cost", "paper2023_cost"),
     }
@@ -285,6 +287,7 @@ QUANTITIES: Mapping[str, CaseQuantity] = {
     HUMAN_EFFORT: over_agents(people, largest, "1", effort, by_torque=_by_effort),
     "holding_power": HOLDING_POWER,
     "hand_deflection": HAND_DEFLECTION,
+    WINDING: WINDING_TEMPERATURE,
     POWER: ROBOT_POWER,
     SPINE: L5S1_MOMENT,
     "human_load_torque": HUMAN_LOAD_TORQUE,

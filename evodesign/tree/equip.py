@@ -115,8 +115,8 @@ def mounted_solids(tree: Tree, actuators: Mapping[str, Actuator]) -> Iterator[tu
 
 
 def rated_torques(tree: Tree) -> dict[str, Scalar]:
-    """The rated torques [N m] within which postures must keep, by joint name."""
-    return {name: each.rated for name, each in actuators_of(tree).items() if each.holds}
+    """The torques [N m] within which postures must keep, by joint name: rated ones, derated by the duty."""
+    return {name: each.held for name, each in actuators_of(tree).items() if each.holds}
 
 
 def actuators_of(tree: Tree) -> dict[str, Actuator]:

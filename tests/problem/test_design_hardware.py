@@ -15,6 +15,7 @@ from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.gradients import assessed_gradients
 from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.hardware.actuators import actuator_law
+from evodesign.hardware.heat import Duty
 from evodesign.mechanics.agent import ROBOT
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.designs import designs_text, read_designs
@@ -23,7 +24,7 @@ from evodesign.quantities.design_result import DesignResult
 from evodesign.quantities.hardware_quantities import cost
 from evodesign.quantities.objectives import objective_kinds
 from evodesign.records import Constraint, Hold, Objective, ProblemSource, Sense, design_of
-from evodesign.tree.equip import actuators_of
+from evodesign.tree.equip import actuators_of, rated_torques
 from tests.fuzz.input_cases import PROBLEM, TEXTS
 
 SHOULDER = '\n[[design.actuator]]\nname = "shoulder"\njoints = ["l_shoulder", "r_shoulder"]\n'
@@ -44,6 +45,15 @@ name = "squat"
 joints_deg = { l_shoulder = 60.0 }
 balance = [["spin"]]
 """
+DUTY = """
+[duty]
+lifts_per_hour = 60
+hold_s = 20.0
+shift_h = 8.0
+winding_limit_c = 120.0
+thermal_time_constant_s = 120.0
+"""
+WARM = "\n[constraints]\nwinding_temperature_c = { upper = 100.0 }\n"
 WALL = '\n[[design.wall]]\nname = "arms"\nlinks = ["l_arm", "r_arm"]\n'
 THIN = "thickness_m = [0.001, 0.004]\n"
 IN_ALUMINIUM = 'material = "aluminium_6061"\n'
@@ -201,6 +211,10 @@ def test_designs_name_torques_walls_and_models() -> None:
         (COST, ["constraints.cost_eur", "a [[design.actuator]] for 'cost'"]),
         (SHOULDER + SIZES + COST, ["models with a price_eur in design.actuator[0]", "which has no prices"]),
         (SHOULDER + MODELS + OWN + COST, ["a price_eur of every model", "none of 'X6-60'"]),
+        (DUTY, ["duty", "a [[design.actuator]] that gets warm"]),
+        (SHOULDER + SIZES + DUTY.replace("= 20.0", "= 61.0"), ["duty.hold_s", "at most 60 s"]),
+        (SHOULDER + SIZES + WARM, ["constraints.winding_temperature_c", "a [duty] for"]),
+        (SHOULDER + SIZES + DUTY.replace("c = 120", "c = 20"), ["duty.winding_limit_c", "60"]),
     ],
 )
 def test_contradictions_are_refused_in_a_sentence(more: str, words: list[str]) -> None:
@@ -217,12 +231,15 @@ ARMS = tuple(
 ELBOWS = ("l_elbow", "r_elbow")
 
 
+EASY = Duty(holds_per_hour=30.0, hold=40.0, shift=4.0, air=25.0, limit=120.0, time_constant=90.0)
+
+
 @pytest.fixture(scope="module")
 def driven(problem: DesignProblem) -> DesignProblem:
     """The point-grasp problem at one height, with actuators for shoulders and elbows."""
     actuators = (
-        DesignParameter(ParameterKind.ACTUATOR, "shoulder", (), 0.5, 100.0, joints=ARMS),
-        DesignParameter(ParameterKind.ACTUATOR, "elbow", (), 0.5, 100.0, joints=ELBOWS),
+        DesignParameter(ParameterKind.ACTUATOR, "shoulder", (), 0.5, 100.0, joints=ARMS, duty=EASY),
+        DesignParameter(ParameterKind.ACTUATOR, "elbow", (), 0.5, 100.0, joints=ELBOWS, duty=EASY),
     )
     robot = replace(problem.scene.robot, torque_limits=dict.fromkeys(problem.scene.robot.joints, 500.0))
     return replace(
@@ -232,7 +249,7 @@ def driven(problem: DesignProblem) -> DesignProblem:
         tasks=(Hold(height_m=1.2),),
         objectives=tuple(
             Objective(name=name, sense=Sense.MINIMISE, unit=objective_kinds()[name].unit)
-            for name in ("holding_power", "mass", "robot_torque", "peak_torque")
+            for name in ("holding_power", "mass", "robot_torque", "peak_torque", "winding_temperature")
         ),
         constraints=(Constraint(name="torque_margin", unit="1", lower=1.0, upper=None),),
         options=replace(problem.options, tolerance=1e-11),
@@ -282,6 +299,39 @@ def test_actuators_that_are_too_weak_leave_no_posture(inner: Evaluator) -> None:
     assert hopeless.reach.highest is None or not hopeless.cases[0].solved
 
 
+def test_a_duty_is_every_actuators_and_a_bound_on_windings_may_be_asked_for() -> None:
+    problem = small(SHOULDER + SIZES + DUTY + WARM)
+    assert [each.name for each in problem.constraints] == ["winding_temperature"]
+    duty = problem.space.actuators(problem.space.values((0.5,) * len(problem.space.parameters)))[
+        "l_shoulder"
+    ].duty
+    assert duty == Duty(60.0, 20.0, 8.0, 25.0, 120.0, 120.0)
+
+
+HOT = Duty(holds_per_hour=1.0, hold=3600.0, shift=8.0, air=50.0, limit=120.0, time_constant=120.0)
+"""For ever, in air in which windings bear sqrt(70 / 95) of their rated torque."""
+
+
+def test_a_posture_keeps_within_what_windings_bear_in_the_duty(
+    driven: DesignProblem, strong: DesignResult
+) -> None:
+    """The limit of elbows in the test above, by rated torques that are so much larger."""
+    share = math.sqrt(70.0 / 95.0)
+    parameters = [replace(each, duty=HOT if each.joints else None) for each in driven.space.parameters]
+    warm = replace(driven, space=DesignSpace(tuple(parameters)))
+    limit = 0.7 * max(abs(strong.cases[0].postures[ROBOT].torques[joint]) for joint in ELBOWS)
+    result = solved(Evaluator(warm), 40.0, limit / share)
+    assert result.cases[0].solved
+    torques = result.cases[0].postures[ROBOT].torques
+    assert max(abs(torques[joint]) for joint in ELBOWS) <= limit + 1e-5
+    assert [rated_torques(result.tree)[joint] for joint in ELBOWS] == pytest.approx([limit, limit], rel=1e-9)
+    warmest = max(HOT.temperature(abs(torques[joint]) * share / limit) for joint in ELBOWS)
+    shoulders = max(HOT.temperature(abs(torques[joint]) / 40.0) for joint in ARMS)
+    found = objective_kinds()["winding_temperature"].value(result)
+    assert found == pytest.approx(max(warmest, shoulders), rel=1e-9)
+    assert found <= 120.0
+
+
 def test_gradients_by_actuators_are_those_of_differences(
     driven: DesignProblem, inner: Evaluator, strong: DesignResult
 ) -> None:
@@ -296,7 +346,7 @@ def test_gradients_by_actuators_are_those_of_differences(
             moved = list(values)
             moved[position] += count * step
             results.append(inner.solve(moved))
-        for name in ("holding_power", "mass", "robot_torque", "peak_torque", "torque_margin"):
+        for name in (*(each.name for each in driven.objectives), "torque_margin"):
             found = [kinds[name].value(result) for result in results]
             slope = (8 * (found[2] - found[1]) - (found[3] - found[0])) / (12 * step)
             wanted = slope * parameter.slope_at(values[position])
