@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common, BRepAlgoAPI_Cut, BRepAlgoAPI_Fuse
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_Transform
 from OCP.BRepGProp import BRepGProp
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeSphere
@@ -137,15 +137,15 @@ def line(length: float) -> Body:
 
 
 def placed(body: Body, outer_from_inner: Placement) -> Body:
-    """A body in an outer frame."""
-    return body.Moved(_location(outer_from_inner))
+    """A body in an outer frame, its geometry moved: one that had a location would be an assembly in STEP."""
+    return BRepBuilderAPI_Transform(body, _move(outer_from_inner), True).Shape()
 
 
-def _location(place: Placement) -> TopLoc_Location:
+def _move(place: Placement) -> gp_Trsf:
     move, (x, y, z) = gp_Trsf(), place.translation
     rows = [(*map(float, row), _mm(offset)) for row, offset in zip(place.rotation, (x, y, z), strict=True)]
     move.SetValues(*rows[0], *rows[1], *rows[2])
-    return TopLoc_Location(move)
+    return move
 
 
 def volume(body: Body) -> float:
@@ -198,9 +198,8 @@ def triangles(body: Body) -> tuple[Array, NDArray[np.int64]]:
     while faces.More():
         face, place, first = TopoDS.Face(faces.Current()), TopLoc_Location(), len(vertices) - 1
         mesh = BRep_Tool.Triangulation_s(face, place)
-        for number in range(1, mesh.NbNodes() + 1):
-            point = mesh.Node(number).Transformed(place.Transformation())
-            vertices.append((point.X(), point.Y(), point.Z()))
+        move = place.Transformation()
+        vertices += [mesh.Node(number).Transformed(move).Coord() for number in range(1, mesh.NbNodes() + 1)]
         inwards = face.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
         for number in range(1, mesh.NbTriangles() + 1):
             a, b, c = mesh.Triangle(number).Get()
@@ -241,7 +240,7 @@ def step_file(name: str, products: Sequence[Product], stamp: str) -> bytes:
         color = Quantity_Color(*product.color, Quantity_TypeOfColor.Quantity_TOC_sRGB)
         colors.SetColor(label, color, XCAFDoc_ColorType.XCAFDoc_ColorGen)
         if assembly is not None:
-            _name(shapes.AddComponent(assembly, label, _location(product.place)), product.name)
+            _name(shapes.AddComponent(assembly, label, TopLoc_Location(_move(product.place))), product.name)
     if assembly is not None:
         _name(assembly, name)
         shapes.UpdateAssemblies()

@@ -32,7 +32,7 @@ TABLES_FROM = 252.0
 REDUCTIONS: Final = (1, 2, 5, 10, 20, 50, 100)
 """Scales 1 : n of ISO 5455."""
 
-LEVELS, BALLOONS, GAP, FOOT = 38.0, 15.0, 8.0, 26.0
+LEVELS, BALLOONS, GAP, FOOT = 38.0, 15.0, 6.0, 22.0
 """Widths of the column of heights, of one of item numbers, between views; height under the views [mm]."""
 
 SMALL: Final = 5.5

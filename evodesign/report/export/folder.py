@@ -13,7 +13,6 @@ from pathlib import Path
 import msgspec
 
 from evodesign.errors import InputError, ModelError
-from evodesign.evaluation.bill import link_materials
 from evodesign.evaluation.progress import SILENT, PrecomputeProgress
 from evodesign.files import write_folder
 from evodesign.mechanics.agent import ROBOT
@@ -80,6 +79,8 @@ def export_logged(
         RunError: the run holds no evaluation yet.
         InputError: it holds none of that number; or as `export_design`.
     """
+    from evodesign.evaluation.bill import link_materials  # CasADi takes its time to load
+
     opened = open_design(run, number, jobs, progress)
     name = run.directory.resolve().name
     problem, scene_set = opened.rebuilt.problem, opened.scene_set()
