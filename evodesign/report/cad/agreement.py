@@ -24,7 +24,7 @@ from evodesign.report.cad.parts import LinkPart, MotorPart, Parts
 
 
 @dataclass(frozen=True, slots=True)
-class Agreement:
+class LinkAgreement:
     """A link as it is drawn and as the URDF has it.
 
     Args:
@@ -74,7 +74,7 @@ def relative_difference(one: Inertia, other: Inertia) -> float:
     return float(np.linalg.norm(np.array(one.about_center, float) - reference) / np.linalg.norm(reference))
 
 
-def agreement_of(part: LinkPart, motors: tuple[MotorPart, ...]) -> Agreement:
+def agreement_of(part: LinkPart, motors: tuple[MotorPart, ...]) -> LinkAgreement:
     """How a link of the CAD files agrees with the URDF.
 
     Args:
@@ -93,7 +93,7 @@ def agreement_of(part: LinkPart, motors: tuple[MotorPart, ...]) -> Agreement:
     housings = [_spread(kernel.outer_body(motor.solid), float(motor.actuator.mass)) for motor in motors]
     volume = sum(kernel.volume(body) for body in bodies)
     united = kernel.united_volume(bodies) if len(bodies) > 1 else volume
-    return Agreement(
+    return LinkAgreement(
         volume=volume,
         walls=_mass(walls),
         filling=_mass(filling),
@@ -106,7 +106,7 @@ def agreement_of(part: LinkPart, motors: tuple[MotorPart, ...]) -> Agreement:
     )
 
 
-def agreements(parts: Parts) -> dict[str, Agreement]:
+def agreements(parts: Parts) -> dict[str, LinkAgreement]:
     """How the links of the CAD files agree with the URDF, by link."""
     return {part.name: agreement_of(part, parts.motors_of(part.name)) for part in parts.links}
 

@@ -15,9 +15,6 @@ from evodesign.report.cad.sheet import drawing_svg
 from evodesign.tree.mesh_write import stl, triangles_of, vertices_of
 from evodesign.tree.model import Link, Tree
 
-METAL, MOTOR, AXIS = (0.72, 0.75, 0.78), (0.85, 0.45, 0.1), (0.8, 0.1, 0.1)
-"""Colours of links, motors and axes in STEP files."""
-
 
 def cad_files(tree: Tree, materials: Mapping[str, str], title: str, stamp: str) -> dict[str, bytes]:
     """The CAD files of a robot, by name in their folder.
@@ -49,15 +46,15 @@ def cad_files(tree: Tree, materials: Mapping[str, str], title: str, stamp: str) 
 def _product(part: LinkPart) -> kernel.Product:
     """A link as one body, or as several that stay apart where it has several solids."""
     body = kernel.together([kernel.body_of(solid) for solid in part.link.solids])
-    return kernel.Product(part.name, body, part.root_from_link, METAL)
+    return kernel.Product(part.name, body, part.root_from_link)
 
 
 def _motors_and_axes(parts: Parts) -> Iterator[kernel.Product]:
     for motor in parts.motors:
         body = kernel.solid_body(motor.solid.shape, None)
-        yield kernel.Product(motor.name, body, motor.root_from_motor, MOTOR)
+        yield kernel.Product(motor.name, body, motor.root_from_motor)
     for axis in parts.axes:
-        yield kernel.Product(axis.name, kernel.line(AXIS_LENGTH), axis.root_from_axis, AXIS)
+        yield kernel.Product(axis.name, kernel.line(AXIS_LENGTH), axis.root_from_axis)
 
 
 def _stl(vertices: kernel.Array, corners: np.ndarray[tuple[int, ...], np.dtype[np.int64]]) -> bytes:

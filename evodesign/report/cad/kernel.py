@@ -9,9 +9,11 @@ Source: Open CASCADE Technology, user guides "Modeling Algorithms" and "STEP Tra
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import reduce
+from itertools import count
 from typing import Any, Final
 
 import numpy as np
@@ -27,7 +29,6 @@ from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf
 from OCP.GProp import GProp_GProps
 from OCP.IFSelect import IFSelect_ReturnStatus
 from OCP.Message import Message
-from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
 from OCP.STEPCAFControl import STEPCAFControl_Writer
 from OCP.STEPControl import STEPControl_StepModelType
 from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
@@ -37,11 +38,12 @@ from OCP.TopAbs import TopAbs_Orientation, TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Compound
-from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool
+from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Shape, Solid, Sphere
+from evodesign.errors import on_one_line
 
 Body = Any
 """A TopoDS_Shape, in millimetres."""
@@ -58,6 +60,11 @@ FACET_DISTANCE: Final = 0.5
 WELD: Final = 1e-5
 """Vertices nearer to each other [mm] are one."""
 
+USE: Final = "NEXT_ASSEMBLY_USAGE_OCCURRENCE"
+USE_OF_PART: Final = re.compile(rf"{USE}\('\d+'((?:'(?:[^']|'')*'|[^';])*);")
+STRING_OR_SPACE: Final = re.compile(r"('(?:[^']|'')*')|\s+")
+"""What STEP files say of a part in an assembly, and what of it are strings and line ends."""
+
 Array = NDArray[np.float64]
 
 
@@ -69,13 +76,11 @@ class Product:
         name: of the product.
         body: in its own frame.
         place: in the assembly's frame.
-        color: red, green, blue, from 0 to 1.
     """
 
     name: str
     body: Body
     place: Placement
-    color: tuple[float, float, float]
 
 
 def body_of(solid: Solid) -> Body:
@@ -224,7 +229,7 @@ def step_file(name: str, products: Sequence[Product], stamp: str) -> bytes:
 
     Args:
         name: of the assembly; of a single product its own is taken.
-        products: at least one, of different names.
+        products: at least one, of different names, none of which shares its body with another.
         stamp: time that the file bears, ISO 8601; equal products and stamps give equal files.
     Raises:
         RuntimeError: Open CASCADE cannot write them.
@@ -232,13 +237,10 @@ def step_file(name: str, products: Sequence[Product], stamp: str) -> bytes:
     _silence()
     document = TDocStd_Document(TCollection_ExtendedString("BinXCAF"))
     shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
-    colors = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
     assembly = shapes.NewShape() if len(products) > 1 else None
     for product in products:
         label = shapes.AddShape(product.body, False)
         _name(label, product.name)
-        color = Quantity_Color(*product.color, Quantity_TypeOfColor.Quantity_TOC_sRGB)
-        colors.SetColor(label, color, XCAFDoc_ColorType.XCAFDoc_ColorGen)
         if assembly is not None:
             _name(shapes.AddComponent(assembly, label, TopLoc_Location(_move(product.place))), product.name)
     if assembly is not None:
@@ -246,13 +248,23 @@ def step_file(name: str, products: Sequence[Product], stamp: str) -> bytes:
         shapes.UpdateAssemblies()
     writer = STEPCAFControl_Writer()
     writer.SetNameMode(True)
-    writer.SetColorMode(True)
     writer.Transfer(document, STEPControl_StepModelType.STEPControl_AsIs)
     _head(writer, name, stamp)
     file = io.BytesIO()
     if writer.WriteStream(file) != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise RuntimeError(f"Open CASCADE does not write '{name}'")
-    return file.getvalue()
+    return _numbered(file.getvalue().decode("latin-1")).encode("latin-1")
+
+
+def _numbered(text: str) -> str:
+    """A STEP file whose uses of parts are numbered from 1; Open CASCADE counts on from file to file."""
+    numbers = count(1)
+
+    def renumbered(use: re.Match[str]) -> str:
+        rest = STRING_OR_SPACE.sub(lambda each: (each[1] or "").replace("\n", ""), use[1])
+        return f"{USE}('{next(numbers)}'{rest};"
+
+    return USE_OF_PART.sub(renumbered, text)
 
 
 def _head(writer: STEPCAFControl_Writer, name: str, stamp: str) -> None:
@@ -270,7 +282,7 @@ def _ascii(text: str) -> TCollection_HAsciiString:
 
 
 def _name(label: Any, name: str) -> None:
-    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name, True))
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(on_one_line(name), True))
 
 
 def _silence() -> None:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from evodesign.body.inertia import Inertia
 from evodesign.body.placement import Vector
 from evodesign.errors import on_one_line
-from evodesign.report.cad.agreement import Agreement
+from evodesign.report.cad.agreement import LinkAgreement
 from evodesign.report.cad.clashes import Clash
 from evodesign.report.cad.listing import millimetres, section_text, wall_text
 from evodesign.report.cad.parts import LinkPart, Parts
@@ -42,7 +42,7 @@ housings" takes the cylinders that are drawn instead. A posture depends on mass 
 
 
 def readme_text(
-    parts: Parts, compared: Mapping[str, Agreement], motors: Sequence[Clash], neighbours: Sequence[Clash]
+    parts: Parts, compared: Mapping[str, LinkAgreement], motors: Sequence[Clash], neighbours: Sequence[Clash]
 ) -> str:
     """The README as Markdown.
 
@@ -83,7 +83,7 @@ def _without_bodies(parts: Parts) -> list[str]:
     return found
 
 
-def _parts_table(parts: Parts, compared: Mapping[str, Agreement]) -> str:
+def _parts_table(parts: Parts, compared: Mapping[str, LinkAgreement]) -> str:
     heads = (
         *("link", "files", "outside [mm]", "wall [mm]", "material", "density [kg/m³]", "volume [cm³]"),
         *("mass of the body [kg]", "filling [kg]", "motors [kg]", "centre of the body [mm]"),
@@ -92,7 +92,7 @@ def _parts_table(parts: Parts, compared: Mapping[str, Agreement]) -> str:
     return _table(heads, (_part_row(part, compared[part.name]) for part in parts.links))
 
 
-def _part_row(part: LinkPart, found: Agreement) -> tuple[str, ...]:
+def _part_row(part: LinkPart, found: LinkAgreement) -> tuple[str, ...]:
     solids = part.link.solids
     return (
         _code(part.name),
@@ -110,7 +110,7 @@ def _part_row(part: LinkPart, found: Agreement) -> tuple[str, ...]:
     )
 
 
-def _shared(compared: Mapping[str, Agreement]) -> list[str]:
+def _shared(compared: Mapping[str, LinkAgreement]) -> list[str]:
     found = {name: each.shared for name, each in compared.items() if each.shared > 1e-6}
     if not found:
         return []
@@ -121,7 +121,7 @@ def _shared(compared: Mapping[str, Agreement]) -> list[str]:
     ]
 
 
-def _worst(compared: Mapping[str, Agreement]) -> str:
+def _worst(compared: Mapping[str, LinkAgreement]) -> str:
     if not compared:
         return "No link has a body."
     mass = max(compared, key=lambda name: abs(compared[name].mass_difference))
@@ -136,7 +136,7 @@ def _worst(compared: Mapping[str, Agreement]) -> str:
     )
 
 
-def _mass_table(compared: Mapping[str, Agreement]) -> str:
+def _mass_table(compared: Mapping[str, LinkAgreement]) -> str:
     heads = (
         *("link", "mass [kg]", "URDF [kg]", "difference [%]"),
         *("centre [mm]", "URDF [mm]", "distance [mm]"),
@@ -156,7 +156,7 @@ def _mass_table(compared: Mapping[str, Agreement]) -> str:
     return _table(heads, rows)
 
 
-def _inertia_table(compared: Mapping[str, Agreement]) -> str:
+def _inertia_table(compared: Mapping[str, LinkAgreement]) -> str:
     heads = (
         *("link", "inertia [kg cm²]: xx, yy, zz, xy, xz, yz", "URDF [kg cm²]", "difference [%]"),
         *("with housings [kg cm²]", "difference [%]"),

@@ -207,7 +207,7 @@ def _heights(axes: Axes, placed: Placed, parts: Parts) -> None:
         _text(axes, x, y, f"{level}  {cut(names[0], 17)}{more}", SMALL, va="center")
         line = ([x + 30.0, x + 33.0, placed.corner[0]], [y, at, at])
         axes.plot(*line, color=AXIS, linewidth=0.3, zorder=1.0)
-    _text(axes, x, max(spread(wanted, LINE)[-1], wanted[-1]) + 5.0, "height of joints", SMALL)
+    _text(axes, x, max(spread(wanted, LINE)[-1], wanted[-1]) + LINE + 0.9, "height of joints", SMALL)
 
 
 def spread(wanted: Sequence[float], least: float) -> list[float]:

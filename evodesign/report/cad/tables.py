@@ -30,6 +30,10 @@ MOST_LINE, TITLE_BLOCK = 4.0, 40.0
 """Height of a row where there is room; what stays free at the bottom of the sheet [mm]."""
 
 
+FILLED = 0.95
+"""Share of a column's width that text takes at most, as programs differ in how wide they draw a font."""
+
+
 def draw_tables(
     axes: Axes, links: Sequence[LinkRow], motors: Sequence[MotorRow], left: float, right: float, top: float
 ) -> None:
@@ -95,7 +99,7 @@ def _table(
 
 def _fitted(text: str, width: float, size: float) -> str:
     """A text cut to a width [mm]."""
-    while len(text) > 1 and _width(text, size) > width:
+    while len(text) > 1 and _width(text, size) > FILLED * width:
         text = f"{text[:-2].rstrip('…')}…"
     return text
 

@@ -13,6 +13,8 @@ from OCP.STEPCAFControl import STEPCAFControl_Reader
 from OCP.TCollection import TCollection_ExtendedString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDocStd import TDocStd_Document
+from OCP.TopAbs import TopAbs_ShapeEnum
+from OCP.TopExp import TopExp_Explorer
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
 
@@ -61,3 +63,17 @@ def measured(body: Any) -> tuple[float, np.ndarray, np.ndarray]:
     center, matrix = found.CentreOfMass(), found.MatrixOfInertia()
     rows = [[matrix.Value(i, j) for j in (1, 2, 3)] for i in (1, 2, 3)]
     return found.Mass() * 1e-9, 1e-3 * np.array([center.X(), center.Y(), center.Z()]), 1e-15 * np.array(rows)
+
+
+def explored(body: Any, kind: TopAbs_ShapeEnum) -> list[Any]:
+    """Parts of a kind that a body is made of."""
+    found, each = [], TopExp_Explorer(body, kind)
+    while each.More():
+        found.append(each.Current())
+        each.Next()
+    return found
+
+
+def solids_in(body: Any) -> list[Any]:
+    """The solids of a body."""
+    return explored(body, TopAbs_ShapeEnum.TopAbs_SOLID)

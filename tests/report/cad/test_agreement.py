@@ -11,7 +11,6 @@ import pytest
 import trimesh
 from OCP.BRep import BRep_Tool
 from OCP.TopAbs import TopAbs_ShapeEnum
-from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
 
 from evodesign.report.cad.agreement import agreements
@@ -19,7 +18,7 @@ from evodesign.report.cad.folder import cad_files
 from evodesign.report.cad.parts import parts_of
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.model import Tree
-from tests.report.cad.reread import Part, measured, parts_in
+from tests.report.cad.reread import Part, explored, measured, parts_in
 from tests.report.cad.robots import axes_at_zero, designed, frames_at_zero, in_pinocchio
 
 WITHIN = 0.02
@@ -121,14 +120,6 @@ def ends_of(axis: Part) -> list[np.ndarray]:
     vertices = explored(edge, TopAbs_ShapeEnum.TopAbs_VERTEX)
     points = [BRep_Tool.Pnt_s(TopoDS.Vertex(each)) for each in vertices]
     return [axis.place[:3, :3] @ [p.X(), p.Y(), p.Z()] + axis.place[:3, 3] for p in points]
-
-
-def explored(body: object, kind: TopAbs_ShapeEnum) -> list[object]:
-    found, each = [], TopExp_Explorer(body, kind)
-    while each.More():
-        found.append(each.Current())
-        each.Next()
-    return found
 
 
 @pytest.mark.slow
