@@ -29,8 +29,8 @@ WIDTH, HEIGHT, MARGIN = 420.0, 297.0, 10.0
 TABLES_FROM = 252.0
 """Where the tables begin [mm from the left]; views are left of them."""
 
-REDUCTIONS: Final = (1, 2, 5, 10, 20, 50, 100)
-"""Scales 1 : n of ISO 5455."""
+REDUCTIONS: Final = (1.0, 2.0, 5.0, 7.5, 10.0, 15.0, 20.0, 50.0, 100.0)
+"""Scales 1 : n: those of ISO 5455, and two between them, as humanoids are just too tall for 1 : 5."""
 
 LEVELS, BALLOONS, GAP, FOOT = 38.0, 15.0, 6.0, 22.0
 """Widths of the column of heights, of one of item numbers, between views; height under the views [mm]."""
@@ -64,7 +64,7 @@ class Placed:
     low: Array
     high: Array
     corner: tuple[float, float]
-    reduction: int
+    reduction: float
 
     def on_sheet(self, seen: Array) -> Array:
         """Points of the view [m], shape (..., 2), on the sheet [mm]."""
@@ -146,7 +146,7 @@ def _draw_view(axes: Axes, placed: Placed) -> None:
         axes.fill(x, y, fill=False, edgecolor=MOTOR, linewidth=0.5, linestyle=(0, (3, 1.5)), zorder=4.0)
     x, y = placed.corner
     middle = x + placed.size[0] / 2.0
-    _text(axes, middle, y - 17.0, f"{placed.view.title}, 1 : {placed.reduction}", 7.0, ha="center")
+    _text(axes, middle, y - 17.0, f"{placed.view.title}, 1 : {placed.reduction:g}", 7.0, ha="center")
 
 
 def _draw_axes(axes: Axes, placed: Placed, parts: Parts) -> None:
@@ -259,14 +259,14 @@ def _balloons(axes: Axes, placed: Placed, items: Iterator[tuple[str, Array]], co
         _text(axes, x + 0.6, y, item, SMALL, va="center", color=color)
 
 
-def _title_block(axes: Axes, title: str, reduction: int, parts: Parts) -> None:
+def _title_block(axes: Axes, title: str, reduction: float, parts: Parts) -> None:
     left, low, top = TABLES_FROM, MARGIN, MARGIN + 24.0
     _box(axes, left, low, WIDTH - MARGIN, top, 0.8)
     _text(axes, left + 2.0, top - 6.0, cut(on_one_line(title), 70), 9.0)
     mass = float(parts.tree.mass)
     lines = (
         f"{cut(on_one_line(parts.tree.name), 40)}, {mass:.2f} kg with motors; joint angles zero",
-        f"lengths in mm, scale 1 : {reduction} on A3; outlines of the mass model's bodies, motors dashed",
+        f"lengths in mm, scale 1 : {reduction:g} on A3; outlines of the mass model's bodies, motors dashed",
         "walls as thick at the ends as at the sides; masses of links without motors; written by evodesign",
     )
     for number, line in enumerate(lines):

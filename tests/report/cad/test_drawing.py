@@ -94,7 +94,7 @@ def reach(shape: Sphere | Cylinder | Box, direction: np.ndarray) -> float:
 def test_outlines_are_drawn_to_the_scale_that_is_told(parts: Parts, figure: Figure) -> None:
     (axes,) = figure.axes
     title = next(each.get_text() for each in axes.texts if each.get_text().startswith("front, 1 : "))
-    reduction = int(title.rpartition(" ")[2])
+    reduction = float(title.rpartition(" ")[2])
     assert reduction in REDUCTIONS
     patches = [patch.get_path().vertices for patch in axes.patches if len(patch.get_path().vertices) > 3]
     tallest = max(float(np.ptp(vertices[:, 1])) for vertices in patches)
