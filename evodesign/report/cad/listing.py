@@ -9,9 +9,12 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from evodesign.body.shape import Box, Cylinder, Shape, Solid, Sphere
 from evodesign.report.cad.parts import LinkPart, MotorPart, Parts
-from evodesign.tree.model import JointKind, Tree
+from evodesign.tree.mesh_write import vertices_of
+from evodesign.tree.model import JointKind, Link, Tree
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +24,7 @@ class LinkRow:
     Args:
         item: number in the list, from 1.
         names: of the links.
-        section: outer dimensions of each solid [mm], as text.
+        section: outer dimensions of each solid [mm], as text; of meshes those of the box around them.
         wall: thickness of each solid's wall [mm], as text.
         material: name, or the density.
         length: from the link's own joint to the farthest one that it holds [mm]; None without one of them.
@@ -89,23 +92,32 @@ def material_text(part: LinkPart) -> str:
 
 
 def link_rows(parts: Parts) -> tuple[LinkRow, ...]:
-    """Links with solids in the tree's order, equal ones together."""
-    lengths = joint_distances(parts.tree)
+    """Links with solids in the tree's order, then those of meshes alone; equal ones together."""
+    lengths = {name: round(1000.0 * each, 1) for name, each in joint_distances(parts.tree).items()}
     rows: dict[tuple[object, ...], list[str]] = {}
     for part in parts.links:
-        solids, length = part.link.solids, lengths.get(part.name)
+        solids = part.link.solids
         key = (
             " + ".join(section_text(solid.shape) for solid in solids),
             ", ".join(dict.fromkeys(wall_text(solid) for solid in solids)),
             material_text(part),
-            None if length is None else round(1000.0 * length, 1),
+            lengths.get(part.name),
             round(float(sum(solid.mass for solid in solids)), 3),
         )
         rows.setdefault(key, []).append(part.name)
+    for link in (parts.tree.link_by_name[name] for name in parts.meshes):
+        mass = round(float(link.own_inertia.mass), 3)
+        rows.setdefault((_mesh_text(link), "-", "-", lengths.get(link.name), mass), []).append(link.name)
     return tuple(
         LinkRow(item, tuple(names), *key)  # type: ignore[arg-type]
         for item, (key, names) in enumerate(rows.items(), 1)
     )
+
+
+def _mesh_text(link: Link) -> str:
+    """The box around the meshes of a link, along the link's axes [mm]."""
+    vertices = np.concatenate([vertices_of(mesh) for mesh in link.meshes])
+    return "mesh " + " x ".join(f"{1000.0 * side:.0f}" for side in np.ptp(vertices, axis=0))
 
 
 def joint_distances(tree: Tree) -> Mapping[str, float]:

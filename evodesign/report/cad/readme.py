@@ -58,14 +58,7 @@ def readme_text(
         *_without_bodies(parts),
         "## Before anything is made",
         LIMITS,
-        "## Parts",
-        _parts_table(parts, compared),
-        *_shared(compared),
-        "## Against the URDF",
-        COMPARED,
-        _worst(compared),
-        _mass_table(compared),
-        _inertia_table(compared),
+        *_bodies(parts, compared),
         *_motors(parts, motors),
         *_neighbours(neighbours),
     ]
@@ -81,6 +74,22 @@ def _without_bodies(parts: Parts) -> list[str]:
         names = ", ".join(_code(name) for name in parts.left_out)
         found.append(f"These links have a mass and no shape, so they are left out: {names}.")
     return found
+
+
+def _bodies(parts: Parts, compared: Mapping[str, LinkAgreement]) -> list[str]:
+    """What the bodies weigh; nothing where there are none."""
+    if not compared:
+        return []
+    return [
+        "## Parts",
+        _parts_table(parts, compared),
+        *_shared(compared),
+        "## Against the URDF",
+        COMPARED,
+        _worst(compared),
+        _mass_table(compared),
+        _inertia_table(compared),
+    ]
 
 
 def _parts_table(parts: Parts, compared: Mapping[str, LinkAgreement]) -> str:
@@ -122,8 +131,6 @@ def _shared(compared: Mapping[str, LinkAgreement]) -> list[str]:
 
 
 def _worst(compared: Mapping[str, LinkAgreement]) -> str:
-    if not compared:
-        return "No link has a body."
     mass = max(compared, key=lambda name: abs(compared[name].mass_difference))
     center = max(compared, key=lambda name: compared[name].center_difference)
     inertia = max(compared, key=lambda name: compared[name].inertia_difference)

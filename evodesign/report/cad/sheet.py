@@ -239,7 +239,8 @@ def _link_items(placed: Placed, rows: Sequence[LinkRow]) -> Iterator[tuple[str, 
     """Numbers of links, each at the one of its row that is farthest to the right."""
     for row in rows:
         found = [outline for outline in placed.outlines if outline.name in row.names]
-        yield str(row.item), max(found, key=lambda outline: float(outline.middle[0])).middle
+        if found:  # a flat mesh has none
+            yield str(row.item), max(found, key=lambda outline: float(outline.middle[0])).middle
 
 
 def _motor_items(placed: Placed, rows: Sequence[MotorRow]) -> Iterator[tuple[str, Array]]:
