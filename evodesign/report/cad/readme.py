@@ -22,14 +22,15 @@ Lengths are millimetres. The files of a link are in its own frame, that of `../r
 - `drawing.svg`: outlines at zero, dimensions, and the bill of materials, for A3 paper."""
 
 LIMITS = """\
-These are the bodies of the mass model, for a first quotation and as a start in a CAD program. Before
-anything is made:
+The files hold the bodies of the mass model. They serve for a first quotation and as a start in a CAD
+program, and are no finished parts:
 
 - A hollow link is closed, its wall as thick at the ends as at the sides: it is printed in one piece with an
   opening to drain it, or made of a tube or plates and two ends.
-- Motors have no seats: each is the cylinder of its housing, centred in the joint, and cuts through what the
-  table below says. Bearings, flanges, screws and cables are not drawn.
-- Links of a joint pass through each other where the mass model lets them (last table).
+- Motors have no seats: each is the cylinder of its housing, centred in the joint, and takes the place of
+  the walls that the table of motors names. Bearings, flanges, screws and cables are not drawn.
+- Links of a joint pass through each other where the mass model lets them (last table): they have to be cut
+  back before the joint can move.
 - `filling` is what a hollow link holds beside its wall (cables, boards, covers), spread evenly over it. It
   has mass and no body.
 - A density without the name of a material is an effective one: mass over the volume of the shape."""

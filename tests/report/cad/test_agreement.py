@@ -10,6 +10,7 @@ import pinocchio
 import pytest
 import trimesh
 from OCP.BRep import BRep_Tool
+from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopoDS import TopoDS
 
@@ -59,6 +60,9 @@ def test_links_read_back_weigh_what_the_urdf_says(robot: tuple[Tree, dict[str, b
             assert link.mass == 0.0
             continue
         (solid,), (part,) = link.solids, parts_in(files[f"{link.name}.step"]).values()
+        assert BRepCheck_Analyzer(part.body).IsValid()
+        shells = explored(part.body, TopAbs_ShapeEnum.TopAbs_SHELL)
+        assert len(shells) == (1 if solid.wall is None else 2)  # outside and cavity
         volume, *_ = measured(part.body)
         bodies = [inertia_of(part, float(solid.density) * volume)]
         place = pinocchio.SE3(
