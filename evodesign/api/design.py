@@ -98,25 +98,30 @@ class Design:
         """Each case in short: status, reason, torque norms [N m], residual [1]."""
         return self.assessment.cases
 
-    def export(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
+    def export(self, folder: str | os.PathLike[str], *, cad: bool = False) -> tuple[Path, ...]:
         """Write the design's files, as `evodesign export` does: URDF, MJCF, postures, a replay, a README.
 
         Args:
             folder: a new or empty one.
+            cad: whether STEP, STL and a drawing of the robot are written, too, into `cad/`.
         Returns:
             The files.
         Raises:
-            InputError: the folder holds files or cannot be written; or the design is of no problem or run.
+            InputError: the folder holds files or cannot be written; or the design is of no problem or run; or
+                `cad` without the extra that it needs (pip install 'evodesign[cad]').
         Example:
             >>> [file.name for file in run.design(4).export("design-4")][:3]
             ['README.md', 'robot.urdf', 'robot.xml']
         """
+        from evodesign.report.cad.installed import refuse_without_cad
         from evodesign.report.export.folder import export_logged, refuse_full  # CasADi takes its time to load
 
         if self.log is None:
             raise InputError("design", "", "a design of a run or of a problem", "one of neither")
         refuse_full(Path(folder))
-        return export_logged(self.log(), self.number or 0, Path(folder)).files
+        if cad:
+            refuse_without_cad()
+        return export_logged(self.log(), self.number or 0, Path(folder), cad=cad).files
 
     def plot(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
         """Write figures, as `evodesign evaluate --plot` and `show --plot` do, each as SVG and PNG.

@@ -125,21 +125,36 @@ def _row(joint: str, actuator: Actuator, asked: Sequence[Asked]) -> dict[str, An
 
 def _links(space: DesignSpace, tree: Tree) -> tuple[dict[str, Any], float]:
     """What links with walls are made of, and the mass of all walls [kg]."""
-    of_density = {link: p.nearest for p in space.parameters if p.materials for link in p.links}
+    materials = link_materials(space, tree)
     rows, structure = {}, 0.0
     for wall in space.walls:
         for name in wall.links:
             solids = tree.link_by_name[name].solids
-            density = float(solids[0].density)
-            material = wall.material or (of_density[name](density)[0] if name in of_density else None)
             mass = float(sum(solid.mass for solid in solids))
             structure += mass - float(sum(solid.filling for solid in solids))
             thickness = float(solids[0].wall or 0.0)
             rows[name] = {
-                "material": material,
+                "material": materials.get(name),
                 "wall_m": thickness,
                 "mass_kg": mass,
                 "safety_factor": None,
                 "safety_case": None,
             }
     return rows, structure
+
+
+def link_materials(space: DesignSpace, tree: Tree) -> dict[str, str]:
+    """The names of materials by link, of walls and of densities that are chosen among materials.
+
+    Args:
+        space: of the problem.
+        tree: of the design, numbers.
+    """
+    chosen = {
+        link: parameter.nearest(float(tree.link_by_name[link].solids[0].density))[0]
+        for parameter in space.parameters
+        if parameter.materials
+        for link in parameter.links
+    }
+    walls = {link: wall.material for wall in space.walls if wall.material for link in wall.links}
+    return chosen | walls

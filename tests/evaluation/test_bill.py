@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +11,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from evodesign.evaluation.bill import bill_of_materials
+from evodesign.body.material import CATALOGUE
+from evodesign.evaluation.bill import bill_of_materials, link_materials
 from evodesign.evaluation.evaluate import Evaluator, detail_of
 from evodesign.mechanics.agent import ROBOT, SIDES
 from evodesign.mechanics.balance import GRAVITY
@@ -135,3 +137,25 @@ def test_mujoco_holds_every_posture_with_motors_within_their_rating(
             assert np.abs(left[:6]).max() < 1e-5
             armature = model.dof_armature[moving]
             assert armature == pytest.approx([float(actuators[joint].inertia) for joint in posture.torques])
+
+
+def test_links_are_of_the_materials_whose_densities_they_have(repository: Path) -> None:
+    """Walls of a given one, and densities that a design chooses."""
+    found = {}
+    for name in ("icub_hardware", "icub_materials"):
+        source = read_source(repository / "problems" / f"{name}.toml")
+        problem = build_problem(source)
+        own = {
+            each["name"]: each["density_kg_per_m3"] for each in tomllib.loads(source.text).get("material", ())
+        }
+        densities = {each.name: each.density for each in CATALOGUE.values()} | own
+        for seed in range(3):
+            genome = np.random.default_rng(seed).uniform(size=len(problem.space.parameters)).tolist()
+            values = problem.space.given(problem.space.values(tuple(genome)), {})
+            tree = problem.space.resized(problem.scene.designed_tree, values)
+            for link, material in link_materials(problem.space, tree).items():
+                density = float(tree.link_by_name[link].solids[0].density)
+                assert density == pytest.approx(densities[material]), (name, link)
+                found.setdefault(name, set()).add(material)
+    assert found["icub_hardware"] == {"aluminium_6061"}
+    assert len(found["icub_materials"]) > 1

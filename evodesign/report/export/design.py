@@ -8,8 +8,8 @@ back to the same double.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import msgspec
@@ -53,6 +53,7 @@ class ExportedDesign:
         scene_set: robot of the design, people and loads.
         cases: postures of those that were solved, in the problem's order.
         notes: on what is not as in the problem's files, such as a robot that was averaged.
+        materials: names by link, of those of the robot that have one.
     """
 
     run: str
@@ -61,6 +62,7 @@ class ExportedDesign:
     scene_set: SceneSet
     cases: tuple[CaseDetail, ...]
     notes: tuple[str, ...] = ()
+    materials: Mapping[str, str] = field(default_factory=dict)
 
 
 def design_json(

@@ -18,7 +18,7 @@ from evodesign.files import write_folder
 from evodesign.mechanics.agent import ROBOT
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.report.export.design import ExportedDesign, design_json, postures_csv, wrenches_csv
-from evodesign.report.export.readme import MESHES, readme_text
+from evodesign.report.export.readme import CAD, MESHES, readme_text
 from evodesign.report.opened_design import open_design
 from evodesign.report.replay.layout import layout_text
 from evodesign.report.replay.recording import replay_frames, time_scale, write_frames
@@ -58,7 +58,13 @@ def refuse_full(directory: Path) -> None:
 
 
 def export_logged(
-    run: RunLog, number: int, directory: Path, jobs: int = 1, progress: PrecomputeProgress = SILENT
+    run: RunLog,
+    number: int,
+    directory: Path,
+    jobs: int = 1,
+    progress: PrecomputeProgress = SILENT,
+    *,
+    cad: bool = False,
 ) -> Exported:
     """Write the folder of a design of a run; one without logged postures is solved anew.
 
@@ -68,29 +74,37 @@ def export_logged(
         directory: a new or empty folder.
         jobs: that may work out what a solve needs first.
         progress: is shown what is worked out.
+        cad: whether CAD files of the robot are written, too (`refuse_without_cad` says whether they can be).
     Raises:
         RunError: the run holds no evaluation yet.
         InputError: it holds none of that number; or as `export_design`.
     """
+    from evodesign.evaluation.bill import link_materials  # CasADi takes its time to load
+
     opened = open_design(run, number, jobs, progress)
     name = run.directory.resolve().name
-    notes = opened.rebuilt.problem.symmetry_notes
-    design = ExportedDesign(name, run.header, opened.evaluation, opened.scene_set(), opened.cases, notes)
-    return export_design(design, directory, on_front=opened.on_front)
+    problem, scene_set = opened.rebuilt.problem, opened.scene_set()
+    materials = link_materials(problem.space, scene_set.robot)
+    notes = problem.symmetry_notes
+    design = ExportedDesign(name, run.header, opened.evaluation, scene_set, opened.cases, notes, materials)
+    return export_design(design, directory, on_front=opened.on_front, cad=cad)
 
 
-def export_design(design: ExportedDesign, directory: Path, *, on_front: bool) -> Exported:
+def export_design(design: ExportedDesign, directory: Path, *, on_front: bool, cad: bool = False) -> Exported:
     """Write a design's folder.
 
     Args:
         design: what to write.
         directory: a new or empty folder.
         on_front: whether no design of the run dominates it.
+        cad: whether CAD files of the robot are written, too.
     Raises:
         InputError: the folder holds files already, or cannot be written.
     """
     refuse_full(directory)
     contents, left_out = _contents(design, on_front=on_front)
+    if cad:
+        contents.update(_cad(design))
     names = [*contents]
     contents = {"README.md": readme_text(design, names, left_out).encode(), **contents}
     try:
@@ -127,6 +141,16 @@ def _contents(design: ExportedDesign, *, on_front: bool) -> tuple[dict[str, byte
     contents["replay.mcap"] = recording.getvalue()
     contents["layout.json"] = layout_text(scene_set, cases).encode()
     return contents, left_out
+
+
+def _cad(design: ExportedDesign) -> dict[str, bytes]:
+    """The CAD files of the robot, by name with their folder."""
+    from evodesign.report.cad.folder import cad_files  # Open CASCADE is an extra, and takes a second to load
+
+    evaluation, header = design.evaluation, design.header
+    title = f"{header.problem_name}, design {evaluation.number}"
+    files = cad_files(design.scene_set.robot, design.materials, title, header.started)
+    return {f"{CAD}/{name}": content for name, content in files.items()}
 
 
 def _keys(design: ExportedDesign) -> dict[str, KeyPosture]:

@@ -15,6 +15,9 @@ from evodesign.violations import bounds_text, reason_of_infeasibility
 MESHES: Final = "meshes"
 """The folder of mesh files."""
 
+CAD: Final = "cad"
+"""The folder of CAD files."""
+
 FILES: Final[Mapping[str, str]] = {
     "robot.urdf": """\
 The robot of this design, made of spheres, cylinders and boxes; it needs no other file. Any URDF viewer opens
@@ -41,6 +44,9 @@ last posture stays a second. Open it in Foxglove or Lichtblick with "Open local 
 attached.""",
     "layout.json": """\
 Panels for the recording. In Foxglove or Lichtblick: the layout menu, "Import from file".""",
+    CAD: """\
+The robot for CAD programs and workshops, in millimetres: STEP and STL of each link, an assembly, a drawing,
+and how their masses and inertias agree with `robot.urdf`; `cad/README.md` says what they are.""",
 }
 """What each file is."""
 
@@ -72,7 +78,7 @@ def readme_text(design: ExportedDesign, files: Sequence[str], left_out: Mapping[
 
     Args:
         design: what was exported.
-        files: names of the files that were written, of `FILES` or in `MESHES`.
+        files: names of the files that were written, of `FILES`, or in `MESHES` or `CAD`.
         left_out: why a file is missing, by its name.
     """
     evaluation = design.evaluation
@@ -82,7 +88,7 @@ def readme_text(design: ExportedDesign, files: Sequence[str], left_out: Mapping[
     made_of = (f"- {_code(name)}: {_code(material)}" for name, material in materials.items())
     missing = (f"- no `{name}`: {_code(reason)}" for name, reason in left_out.items())
     texts = _texts(design, files)
-    shown = dict.fromkeys(MESHES if name.startswith(f"{MESHES}/") else name for name in files)
+    shown = dict.fromkeys(name.partition("/")[0] for name in files)
     parts = [
         f"# Design {evaluation.number} of {_code(design.header.problem_name)}",
         f"From the run {_code(design.run)}, generation {evaluation.generation}; {_outcome(design)}.",

@@ -1,0 +1,72 @@
+"""Which parts take the same place at joint angles of zero: what a workshop has to cut out, or make room for.
+
+The mass model puts a motor's centre into the joint, and lets the solids of neighbouring links pass through
+each other. The files show both as they are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from evodesign.body.placement import Placement
+from evodesign.report.cad import kernel
+from evodesign.report.cad.parts import LinkPart, MotorPart, Parts, turned_to
+
+LEAST_VOLUME = 1e-9
+"""Parts that share less [m^3] touch at most."""
+
+
+@dataclass(frozen=True, slots=True)
+class Clash:
+    """What a part has in common with a link.
+
+    Args:
+        part: a motor, or the child link of a joint.
+        link: that it passes through.
+        volume: that both take [m^3]; of a motor the walls that it cuts, of links what their outer shapes
+            share.
+    """
+
+    part: str
+    link: str
+    volume: float
+
+
+def motor_clashes(parts: Parts) -> Iterator[Clash]:
+    """The motors that cut through bodies of the links on both sides of their joint."""
+    links = {part.name: part for part in parts.links}
+    for motor in parts.motors:
+        sides = {
+            motor.joint.parent: motor.link_from_motor,
+            motor.joint.child: Placement(rotation=turned_to(motor.joint.axis)),
+        }
+        for name, link_from_motor in sides.items():
+            if name in links:
+                yield from _of_motor(motor, link_from_motor, links[name])
+
+
+def _of_motor(motor: MotorPart, link_from_motor: Placement, part: LinkPart) -> Iterator[Clash]:
+    housing = kernel.placed(kernel.solid_body(motor.solid.shape, None), link_from_motor)
+    bodies = (kernel.body_of(solid) for solid in part.link.solids)
+    yield from _clash(motor.name, part.name, sum(kernel.shared_volume(housing, body) for body in bodies))
+
+
+def neighbour_clashes(parts: Parts) -> Iterator[Clash]:
+    """The links of a joint whose outer shapes pass through each other."""
+    links = {part.name: part for part in parts.links}
+    for joint in parts.tree.joints:
+        if joint.parent not in links or joint.child not in links:
+            continue
+        above = [kernel.outer_body(solid) for solid in links[joint.parent].link.solids]
+        below = [
+            kernel.placed(kernel.outer_body(solid), joint.parent_from_child)
+            for solid in links[joint.child].link.solids
+        ]
+        volume = sum(kernel.shared_volume(one, other) for one in below for other in above)
+        yield from _clash(joint.child, joint.parent, volume)
+
+
+def _clash(part: str, link: str, volume: float) -> Iterator[Clash]:
+    if volume > LEAST_VOLUME:
+        yield Clash(part, link, volume)
