@@ -4,8 +4,8 @@ All numbers are SI, places those at joint angles of zero in the root link's fram
 
     root_from_motor = root_from_parent  parent_from_child  R        R z = the joint's axis
 
-A motor is the cylinder of its housing about the joint's axis, with its centre in the joint, where the mass
-model has its ball.
+A motor is the cylinder of its housing about the joint's axis: where it is mounted, or, where the mass model
+has a ball, with its centre in the joint.
 """
 
 from __future__ import annotations
@@ -133,7 +133,9 @@ def parts_of(tree: Tree, materials: Mapping[str, str]) -> Parts:
         root_from_axis = frames[joint.parent] @ link_from_axis
         axes.append(AxisPart(joint, root_from_axis))
         if joint.actuator is not None:
-            motors.append(MotorPart(joint, joint.actuator, link_from_axis, root_from_axis))
+            along = _along(joint.actuator)
+            places = link_from_axis @ along, root_from_axis @ along
+            motors.append(MotorPart(joint, joint.actuator, *places))
     return Parts(
         tree=tree,
         links=tuple(
@@ -149,6 +151,13 @@ def parts_of(tree: Tree, materials: Mapping[str, str]) -> Parts:
             if not link.solids and link.name not in shown and float(link.mass) > 0.0
         ),
     )
+
+
+def _along(actuator: Actuator) -> Placement:
+    """From the joint's axis to the middle of the housing."""
+    if actuator.mounting is None:
+        return Placement()
+    return Placement(translation=(0.0, 0.0, actuator.mounting.share * float(actuator.size[1])))
 
 
 def _is_mesh(link: Link) -> bool:
