@@ -5,14 +5,16 @@
     stress          sigma = |N|/A + |M1| c1/I1 + |M2| c2/I2,  tau = T R/J  or  T/(2 Am t)
     von Mises       sqrt(sigma^2 + 3 tau^2)
     column          N <= pi^2 E I/(K L)^2
-    wall            sigma <= 0.605 k E t/R, with the knock-down k of a real tube
+    round wall      sigma <= 0.605 k E t/R, with the knock-down k of a real tube
+    flat wall       sigma <= 4 pi^2 E / (12 (1 - nu^2)) (t/b)^2, hinged at its edges, b its wider side
     virtual work    delta = L/(6 E I) (2 M0 m0 + M0 mL + ML m0 + 2 ML mL) + L T t/(G J) + tau u/k
 
 b' and h' are inner sides, Am is the area inside the wall's midline and s its length; M and T are moments of a
 load, m, t and u those of a unit force where the deflection is asked for, tau and u torques of a joint of
 stiffness k. Virtual work is exact for moments that are linear along the beam, as under loads at its ends.
 
-Source: textbook mechanics (Timoshenko and Gere, Mechanics of Materials); knock-down: NASA SP-8007.
+Source: textbook mechanics (Timoshenko and Gere, Mechanics of Materials and, of plates, Theory of Elastic
+Stability); knock-down: NASA SP-8007.
 """
 
 from __future__ import annotations
@@ -26,6 +28,9 @@ from evodesign.body.placement import Scalar
 
 WALL_BUCKLING = 0.605
 """Critical stress of a perfect tube's wall in units of E t/R."""
+
+FLAT = 4.0
+"""Coefficient of buckling of a long plate that is hinged along its edges."""
 
 KNOCK_DOWN = 0.3
 """What is left of it in a real tube: the low end of 0.3 to 0.5."""
@@ -196,9 +201,16 @@ def buckling_force(section: Section, length: float, young: float, effective: flo
     return float(math.pi**2 * young * min(section.second_moments) / (effective * length) ** 2)
 
 
-def wall_buckling_stress(tube: RoundTube, young: float) -> float:
-    """Compression [Pa] under which a real tube's wall gives way."""
-    return float(KNOCK_DOWN * WALL_BUCKLING * young * tube.wall / tube.radius)
+def wall_buckling_stress(section: Section, material: MaterialStrength) -> float:
+    """Compression [Pa] under which a wall gives way: a real tube's, or the wider flat side of a rectangle.
+
+    A flat side is long, hinged along its edges and pressed evenly; one that is bent bears more.
+    """
+    if isinstance(section, RoundTube):
+        return float(KNOCK_DOWN * WALL_BUCKLING * material.young * section.wall / section.radius)
+    side = max(section.width, section.height)
+    plate = math.pi**2 * material.young / (12.0 * (1.0 - material.poisson**2))
+    return float(FLAT * plate * (section.wall / side) ** 2)
 
 
 def safety_factor(section: Section, load: SectionLoad, length: float, material: MaterialStrength) -> float:
@@ -214,8 +226,8 @@ def safety_factor(section: Section, load: SectionLoad, length: float, material: 
     factors = [material.strength / stress if stress > 0.0 else math.inf]
     if load.normal < 0.0:
         factors.append(buckling_force(section, length, material.young) / -load.normal)
-    if isinstance(section, RoundTube) and stress > 0.0:
-        factors.append(wall_buckling_stress(section, material.young) / stress)
+    if stress > 0.0:
+        factors.append(wall_buckling_stress(section, material) / stress)
     return min(factors)
 
 
