@@ -48,6 +48,13 @@ def test_bounds_are_read_in_the_order_of_the_file(problem: DesignProblem) -> Non
 
 
 DRIVEN = """
+[duty]
+lifts_per_hour = 30
+hold_s = 10.0
+shift_h = 8.0
+winding_limit_c = 120.0
+thermal_time_constant_s = 120.0
+
 [[design.actuator]]
 name = "knee"
 joints = ["l_knee", "r_knee"]
