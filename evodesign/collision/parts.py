@@ -48,7 +48,7 @@ Chain = tuple[tuple[str, JointKind, str, str], ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Room:
+class PartClearance:
     """How much room the parts of a robot have.
 
     Args:
@@ -65,7 +65,7 @@ class Room:
         return -self.lacking if self.lacking > 0.0 else self.least.distance
 
 
-def room_of(tree: Tree) -> Room | None:
+def part_clearance(tree: Tree) -> PartClearance | None:
     """How much room the parts of a robot have; None where no actuator is a body.
 
     Args:
@@ -88,7 +88,7 @@ def room_of(tree: Tree) -> Room | None:
     lacking = sum(max(0.0, -gap.distance) for gap in found)
     if lacking == 0.0 and len(places):
         found.append(placed.nearest(places))
-    return Room(min(found, key=lambda gap: gap.distance), lacking) if found else None
+    return PartClearance(min(found, key=lambda gap: gap.distance), lacking) if found else None
 
 
 def part_name(joint: Joint) -> str:
@@ -141,11 +141,11 @@ def _thickness(tree: Tree, mounted: list[Mounted]) -> Iterator[BodyDistance]:
         if actuator.mounting is not None and actuator.mounting.share == 0.0 and holders:
             axis = np.array(solid.link_from_solid.rotation, float)[:, 2]
             diameter, length = map(float, actuator.size)
-            room = max(room_in(holder, axis, diameter / 2.0, length / 2.0) for holder in holders)
-            yield BodyDistance(part_name(joint), joint.parent, room)
+            clearance = max(clearance_in(holder, axis, diameter / 2.0, length / 2.0) for holder in holders)
+            yield BodyDistance(part_name(joint), joint.parent, clearance)
 
 
-def room_in(holder: Solid, axis: Array, radius: float, half: float) -> float:
+def clearance_in(holder: Solid, axis: Array, radius: float, half: float) -> float:
     """How much thicker a solid is than a housing that it holds [m], across its length.
 
     Args:

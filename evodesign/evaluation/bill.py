@@ -6,7 +6,7 @@
      "links": {link: {"material": name, "wall_m", "mass_kg": without actuators,
                       "safety_factor": or null, "safety_case": case of the lift, or null}},
      "mass_kg": {"actuators", "structure", "rest", "total"},
-     "least_room": {"parts": two names, "room_m": negative where they do not go together}}
+     "least_clearance": {"parts": two names, "clearance_m": negative where they do not go together}}
 
 What is asked by a load case is its factor times the torque, and its share that of peak torque; by a case of
 the lift, of rated torque. Structure is the walls' own mass. Least room is told where actuators are bodies
@@ -20,7 +20,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from evodesign.collision.parts import room_of
+from evodesign.collision.parts import part_clearance
 from evodesign.design.space import DesignSpace
 from evodesign.evaluation.logged_posture import logged_posture
 from evodesign.hardware.actuators import Actuator
@@ -61,9 +61,9 @@ def bill_of_materials(problem: DesignProblem, tree: Tree, cases: Sequence[CaseDe
     mass = float(sum(each.mass for each in actuators.values()))
     split = {"actuators": mass, "structure": structure, "rest": total - mass - structure, "total": total}
     bill: dict[str, Any] = {"joints": joints, "links": links, "mass_kg": split}
-    if room := room_of(tree):
-        least = room.least
-        bill["least_room"] = {"parts": [least.first, least.second], "room_m": least.distance}
+    if clearance := part_clearance(tree):
+        least = clearance.least
+        bill["least_clearance"] = {"parts": [least.first, least.second], "clearance_m": least.distance}
     return bill
 
 

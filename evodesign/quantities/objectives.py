@@ -24,7 +24,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from evodesign.collision.parts import room_of
+from evodesign.collision.parts import part_clearance
 from evodesign.collision.zero_posture import built_in_slack
 from evodesign.errors import InputError
 from evodesign.human.strength import largest_relative_torque
@@ -142,7 +142,7 @@ def bodies_apart(result: DesignResult) -> float | None:
 
 def parts_apart(result: DesignResult) -> float | None:
     """How much room the parts have that have least, or minus what all lack [m]; None without such parts."""
-    found = room_of(result.tree)
+    found = part_clearance(result.tree)
     return None if found is None else found.apart
 
 

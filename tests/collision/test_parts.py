@@ -1,4 +1,4 @@
-"""Room between actuators and links, beside MuJoCo's distances and points on housings."""
+"""PartClearance between actuators and links, beside MuJoCo's distances and points on housings."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Solid, Sphere
-from evodesign.collision.parts import PART, room_in, room_of
+from evodesign.collision.parts import PART, clearance_in, part_clearance
 from evodesign.design.space import DesignSpace
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.shipped import SHIPPED
@@ -111,9 +111,9 @@ def test_room_is_that_of_another_library_over_all_pairs(geometry: DesignProblem,
             diameter, length = map(float, actuator.size)
             solids = tree.link_by_name[joint.parent].solids
             found[frozenset((f"{PART}{joint.name}", joint.parent))] = max(
-                room_in(solid, axis, diameter / 2.0, length / 2.0) for solid in solids
+                clearance_in(solid, axis, diameter / 2.0, length / 2.0) for solid in solids
             )
-    room = room_of(tree)
+    room = part_clearance(tree)
     assert room is not None
     lacking = -sum(min(0.0, distance) for distance in found.values())
     assert room.lacking == pytest.approx(lacking, abs=3e-5)
@@ -148,5 +148,5 @@ def test_a_holder_is_as_much_thicker_as_the_points_of_a_housing_lie_within_it(
         sides = np.array(shape.sides, float)
         short = np.argsort(sides)[:2]
         wanted = float((sides / 2.0 - np.abs(points).max(axis=0))[short].min())
-    found = room_in(Solid(shape, place, 1000.0), turn @ along, radius, half)
+    found = clearance_in(Solid(shape, place, 1000.0), turn @ along, radius, half)
     assert found == pytest.approx(wanted, abs=1e-6)

@@ -144,8 +144,8 @@ def test_parts_that_lack_room_are_a_violation_with_two_names_and_a_gradient(
     assert constrained[PARTS_APART] < -0.05
     assert assessed.violation == pytest.approx(-constrained[PARTS_APART])
     bill = bill_of_materials(geometry, result.tree, evaluator.details(result))
-    assert bill["least_room"]["room_m"] < -0.01
-    assert bill["least_room"]["parts"][0].startswith(PART)
+    assert bill["least_clearance"]["clearance_m"] < -0.01
+    assert bill["least_clearance"]["parts"][0].startswith(PART)
     sensitivities = Sensitivities(evaluator.problem, evaluator.known, evaluator.inner)
     found = assessed_gradients(evaluator.problem, sensitivities, values, result).values[PARTS_APART]
     names = [parameter.name for parameter in space.parameters]

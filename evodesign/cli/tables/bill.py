@@ -18,13 +18,13 @@ def mass_title(bill: Mapping[str, Any]) -> str:
     return f"hardware ({rounded(bill['mass_kg']['total'])} kg: {', '.join(parts)})"
 
 
-def room_in_words(bill: Mapping[str, Any]) -> str:
+def clearance_in_words(bill: Mapping[str, Any]) -> str:
     """Which parts of a bill have least room; empty where no actuator is a body."""
-    if (room := bill.get("least_room")) is None:
+    if (least := bill.get("least_clearance")) is None:
         return ""
-    one, other = room["parts"]
-    fit = "of room" if room["room_m"] >= 0.0 else "too little room"
-    return f"{one} and {other} have least room: {abs(1e3 * room['room_m']):.2g} mm {fit}"
+    one, other = least["parts"]
+    fit = "of room" if least["clearance_m"] >= 0.0 else "too little room"
+    return f"{one} and {other} have least room: {abs(1e3 * least['clearance_m']):.2g} mm {fit}"
 
 
 def actuators_table(bill: Mapping[str, Any], title: str = "") -> FittedTable:
@@ -39,7 +39,7 @@ def actuators_table(bill: Mapping[str, Any], title: str = "") -> FittedTable:
         *numbers("joints", "rated [N m]", "peak [N m]", "kg each", "used"),
         *names("most by", "joint"),
     ]
-    table = titled(title, columns, caption=escape(on_one_line(room_in_words(bill))))
+    table = titled(title, columns, caption=escape(on_one_line(clearance_in_words(bill))))
     groups: dict[str, dict[str, Mapping[str, Any]]] = {}
     for joint, row in bill["joints"].items():
         groups.setdefault(row["actuator"], {})[joint] = row

@@ -265,13 +265,13 @@ class WallContent(Part, frozen=True):
 class HardwareContent(Part, frozen=True):
     """The bill of materials; masses of `actuators`, `structure`, `rest` and in `total`.
 
-    `least_room` names two parts and tells by how much they go together, negative where they do not.
+    `least_clearance` names two parts and tells by how much they go together, negative where they do not.
     """
 
     actuators: tuple[ActuatorContent, ...]
     walls: tuple[WallContent, ...]
     mass_kg: dict[str, float]
-    least_room: dict[str, Any] | None = None
+    least_clearance: dict[str, Any] | None = None
 
 
 class DesignContent(Part, frozen=True):

@@ -32,7 +32,7 @@ def hardware_content(
         actuators=tuple(_actuator(name, rows) for name, rows in groups.items()),
         walls=tuple(WallContent(link=link, **row) for link, row in bill["links"].items()),
         mass_kg=bill["mass_kg"],
-        least_room=bill.get("least_room"),
+        least_clearance=bill.get("least_clearance"),
     )
 
 

@@ -32,11 +32,11 @@ const askedRow = (one, columns) => {
 const smallest = (value) => (value === null ? "" : 0 < value && value < 0.01 ? "< 0.01" : figure(value, 3));
 
 // Which parts have least room, where actuators are bodies.
-const roomWords = (room) => {
+const clearanceWords = (room) => {
   if (!room) return "";
   const [one, other] = room.parts;
-  const fit = room.room_m < 0 ? "too little room" : "of room";
-  return ` ${one} and ${other} have least room: ${figure(1000 * Math.abs(room.room_m), 2)} mm ${fit}.`;
+  const fit = room.clearance_m < 0 ? "too little room" : "of room";
+  return ` ${one} and ${other} have least room: ${figure(1000 * Math.abs(room.clearance_m), 2)} mm ${fit}.`;
 };
 
 const actuatorTable = (hardware) => {
@@ -65,7 +65,7 @@ const actuatorTable = (hardware) => {
     "table",
     { class: "bill" },
     element("caption", {
-      text: "Mass and price of one; loss is the most in the lift, of all joints of the group. Used: of rated torque in the lift, of peak torque where the robot stands alone, times the case's factor." + roomWords(hardware.least_room),
+      text: "Mass and price of one; loss is the most in the lift, of all joints of the group. Used: of rated torque in the lift, of peak torque where the robot stands alone, times the case's factor." + clearanceWords(hardware.least_clearance),
     }),
     headRow(heads),
     ...groups,
