@@ -6,7 +6,8 @@ keeps clear of
     all other actuators
     links                but for the one that holds it and those that a joint joins to that one
 
-and what holds one whose middle is in the joint is as thick as it: across the link's length, the housing lies
+and two links that a joint joins stay in touch, or as near to each other as in the robot of the file. What
+holds an actuator whose middle is in the joint is as thick as it: across the link's length, the housing lies
 within the link's solid,
 
     ball            r >= |(R, h)|
@@ -22,7 +23,7 @@ Source: distances by coal; the support of a cylinder.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
@@ -32,10 +33,12 @@ import numpy as np
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Cylinder, Solid, Sphere
 from evodesign.collision.clearance import BodyDistance, Places, SolidBodies, places_of
+from evodesign.collision.pairs import TOUCH
 from evodesign.collision.shapes import Array, solid_of
 from evodesign.hardware.actuators import Actuator, mounted_solid
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Joint, JointKind, Tree
+from evodesign.tree.once_per_tree import once_per_tree
 
 ALIKE = 0.7
 """Cosine of two axes from which on they count as alike."""
@@ -65,11 +68,12 @@ class PartClearance:
         return -self.lacking if self.lacking > 0.0 else self.least.distance
 
 
-def part_clearance(tree: Tree) -> PartClearance | None:
+def part_clearance(tree: Tree, unscaled: Tree) -> PartClearance | None:
     """How much room the parts of a robot have; None where no actuator is a body.
 
     Args:
         tree: of a design, numbers, with its actuators.
+        unscaled: that of the file.
     """
     mounted = [*_mounted(tree)]
     if not mounted:
@@ -84,7 +88,7 @@ def part_clearance(tree: Tree) -> PartClearance | None:
     placed = own.placed(at).beside(links.placed(frames))
     joints = tuple((each.name, each.kind, each.parent, each.child) for each in tree.joints)
     places = _places(joints, placed.names, len(own.names))
-    found = [*_thickness(tree, mounted), *placed.overlapping(places)]
+    found = [*_thickness(tree, mounted), *_held(tree, unscaled), *placed.overlapping(places)]
     lacking = sum(max(0.0, -gap.distance) for gap in found)
     if lacking == 0.0 and len(places):
         found.append(placed.nearest(places))
@@ -132,6 +136,29 @@ def _moving_between(above: Mapping[str, tuple[str, bool]], one: str, other: str)
             link, _ = above[link]
         chains.append({*chain})
     return sum(above[child][1] for child in chains[0] ^ chains[1])
+
+
+def _held(tree: Tree, unscaled: Tree) -> Iterator[BodyDistance]:
+    """By how much links are farther from the next ones than in the file, as negative numbers."""
+    before = _joined_distances(unscaled)
+    for pair, distance in _distances(tree, before).items():
+        if distance > before[pair] + TOUCH:
+            yield BodyDistance(*pair, before[pair] - distance)
+
+
+@once_per_tree
+def _joined_distances(unscaled: Tree) -> Mapping[tuple[str, str], float]:
+    """How far links are from those that a joint joins to them [m], 0 of those in touch."""
+    solid = {link.name for link in unscaled.links if link.solids}
+    pairs = [(joint.parent, joint.child) for joint in unscaled.joints if {joint.parent, joint.child} <= solid]
+    return {pair: max(0.0, distance) for pair, distance in _distances(unscaled, pairs).items()}
+
+
+def _distances(tree: Tree, pairs: Iterable[tuple[str, str]]) -> dict[tuple[str, str], float]:
+    """How far the links of some pairs are apart while all joints are at zero [m]."""
+    bodies = SolidBodies.of_tree(tree)
+    placed = bodies.placed(link_frames(tree, Placement(), {}))
+    return {pair: placed.nearest(places_of(bodies.names, [pair])).distance for pair in pairs}
 
 
 def _thickness(tree: Tree, mounted: list[Mounted]) -> Iterator[BodyDistance]:

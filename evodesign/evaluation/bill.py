@@ -61,7 +61,7 @@ def bill_of_materials(problem: DesignProblem, tree: Tree, cases: Sequence[CaseDe
     mass = float(sum(each.mass for each in actuators.values()))
     split = {"actuators": mass, "structure": structure, "rest": total - mass - structure, "total": total}
     bill: dict[str, Any] = {"joints": joints, "links": links, "mass_kg": split}
-    if clearance := part_clearance(tree):
+    if clearance := part_clearance(tree, problem.scene.designed_tree):
         least = clearance.least
         bill["least_clearance"] = {"parts": [least.first, least.second], "clearance_m": least.distance}
     return bill

@@ -142,7 +142,7 @@ def bodies_apart(result: DesignResult) -> float | None:
 
 def parts_apart(result: DesignResult) -> float | None:
     """How much room the parts have that have least, or minus what all lack [m]; None without such parts."""
-    found = part_clearance(result.tree)
+    found = part_clearance(result.tree, result.scenes[0].designed_tree)
     return None if found is None else found.apart
 
 

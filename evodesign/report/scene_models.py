@@ -16,7 +16,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from evodesign.body.placement import Placement, Vector, rotate
-from evodesign.body.shape import Box, Shape
+from evodesign.body.shape import Box, Cylinder, Shape
 from evodesign.errors import RunError, on_one_line
 from evodesign.mechanics.agent import ROBOT, Agent, Role
 from evodesign.mechanics.payload import Payload
@@ -138,10 +138,14 @@ class PlacedScene:
 
 
 def looks_of(link: Link) -> tuple[tuple[Shape, Placement], ...]:
-    """The shapes that show a link, solids and looks, with their places in it; none where meshes show it."""
+    """The shapes that show a link, with their places in it; none where meshes show it.
+
+    Those are solids, looks and the housings of actuators; balls of actuators that are no bodies are not seen.
+    """
     if link.shown:
         return ()
-    solids = [(solid.shape, solid.link_from_solid) for solid in link.solids]
+    housings = (solid for solid in link.mounted if isinstance(solid.shape, Cylinder))
+    solids = [(solid.shape, solid.link_from_solid) for solid in (*link.solids, *housings)]
     return (*solids, *((look.shape, look.link_from_look) for look in link.looks))
 
 
