@@ -20,6 +20,7 @@ from evodesign.tree.frames import link_frames
 from evodesign.tree.model import JointKind, Tree
 
 SIZES = {
+    "waist": 12.0,
     "hip": 18.0,
     "hip_yaw": 18.0,
     "knee": 14.0,
