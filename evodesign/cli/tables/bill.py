@@ -23,8 +23,8 @@ def clearance_in_words(bill: Mapping[str, Any]) -> str:
     if (least := bill.get("least_clearance")) is None:
         return ""
     one, other = least["parts"]
-    fit = "of room" if least["clearance_m"] >= 0.0 else "too little room"
-    return f"{one} and {other} have least room: {abs(1e3 * least['clearance_m']):.2g} mm {fit}"
+    fit = "" if least["clearance_m"] >= 0.0 else " too little"
+    return f"{one} and {other} have least room: {abs(1e3 * least['clearance_m']):.2g} mm{fit}"
 
 
 def actuators_table(bill: Mapping[str, Any], title: str = "") -> FittedTable:

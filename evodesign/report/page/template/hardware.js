@@ -35,8 +35,8 @@ const smallest = (value) => (value === null ? "" : 0 < value && value < 0.01 ? "
 const clearanceWords = (room) => {
   if (!room) return "";
   const [one, other] = room.parts;
-  const fit = room.clearance_m < 0 ? "too little room" : "of room";
-  return ` ${one} and ${other} have least room: ${figure(1000 * Math.abs(room.clearance_m), 2)} mm ${fit}.`;
+  const fit = room.clearance_m < 0 ? " too little" : "";
+  return ` ${one} and ${other} have least room: ${figure(1000 * Math.abs(room.clearance_m), 2)} mm${fit}.`;
 };
 
 const actuatorTable = (hardware) => {
