@@ -91,6 +91,14 @@ def cross(a: Vector, b: Vector) -> Vector:
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
+def perpendicular(along: Vector) -> tuple[Vector, Vector]:
+    """Two unit vectors across one of numbers, and across each other; right-handed with it as the third."""
+    least = min(range(3), key=lambda place: abs(along[place]))
+    first = cross(along, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))[least])
+    first = scale(1.0 / math.sqrt(dot(first, first)), first)
+    return first, cross(along, first)
+
+
 def rotate(matrix: Matrix, a: Vector) -> Vector:
     """Product of a 3 x 3 matrix and a vector."""
     return (dot(matrix[0], a), dot(matrix[1], a), dot(matrix[2], a))

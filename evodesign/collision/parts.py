@@ -23,7 +23,7 @@ Source: distances by coal; the support of a cylinder.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
@@ -32,8 +32,9 @@ import numpy as np
 
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Cylinder, Solid, Sphere
-from evodesign.collision.clearance import BodyDistance, Places, SolidBodies, places_of
+from evodesign.collision.clearance import BodyDistance, PlacedSolids, Places, SolidBodies, places_of
 from evodesign.collision.pairs import TOUCH
+from evodesign.collision.rules import BodyPair
 from evodesign.collision.shapes import Array, solid_of
 from evodesign.hardware.actuators import Actuator, mounted_solid
 from evodesign.tree.frames import link_frames
@@ -88,7 +89,7 @@ def part_clearance(tree: Tree, unscaled: Tree) -> PartClearance | None:
     placed = own.placed(at).beside(links.placed(frames))
     joints = tuple((each.name, each.kind, each.parent, each.child) for each in tree.joints)
     places = _places(joints, placed.names, len(own.names))
-    found = [*_thickness(tree, mounted), *_held(tree, unscaled), *placed.overlapping(places)]
+    found = [*_thickness(tree, mounted), *_held(placed, unscaled), *placed.overlapping(places)]
     lacking = sum(max(0.0, -gap.distance) for gap in found)
     if lacking == 0.0 and len(places):
         found.append(placed.nearest(places))
@@ -138,27 +139,32 @@ def _moving_between(above: Mapping[str, tuple[str, bool]], one: str, other: str)
     return sum(above[child][1] for child in chains[0] ^ chains[1])
 
 
-def _held(tree: Tree, unscaled: Tree) -> Iterator[BodyDistance]:
+def _held(placed: PlacedSolids, unscaled: Tree) -> Iterator[BodyDistance]:
     """By how much links are farther from the next ones than in the file, as negative numbers."""
     before = _joined_distances(unscaled)
-    for pair, distance in _distances(tree, before).items():
+    for pair, distance in _distances(placed, tuple(before)).items():
         if distance > before[pair] + TOUCH:
             yield BodyDistance(*pair, before[pair] - distance)
 
 
 @once_per_tree
-def _joined_distances(unscaled: Tree) -> Mapping[tuple[str, str], float]:
+def _joined_distances(unscaled: Tree) -> Mapping[BodyPair, float]:
     """How far links are from those that a joint joins to them [m], 0 of those in touch."""
     solid = {link.name for link in unscaled.links if link.solids}
     pairs = [(joint.parent, joint.child) for joint in unscaled.joints if {joint.parent, joint.child} <= solid]
-    return {pair: max(0.0, distance) for pair, distance in _distances(unscaled, pairs).items()}
+    placed = SolidBodies.of_tree(unscaled).hulls.placed(link_frames(unscaled, Placement(), {}))
+    return {pair: max(0.0, distance) for pair, distance in _distances(placed, tuple(pairs)).items()}
 
 
-def _distances(tree: Tree, pairs: Iterable[tuple[str, str]]) -> dict[tuple[str, str], float]:
-    """How far the links of some pairs are apart while all joints are at zero [m]."""
-    bodies = SolidBodies.of_tree(tree)
-    placed = bodies.placed(link_frames(tree, Placement(), {}))
-    return {pair: placed.nearest(places_of(bodies.names, [pair])).distance for pair in pairs}
+def _distances(placed: PlacedSolids, pairs: tuple[BodyPair, ...]) -> dict[BodyPair, float]:
+    """How far the links of some pairs are apart [m]."""
+    places = _places_of_each(placed.names, pairs)
+    return {pair: placed.nearest(own).distance for pair, own in zip(pairs, places, strict=True)}
+
+
+@lru_cache(maxsize=16)
+def _places_of_each(names: tuple[str, ...], pairs: tuple[BodyPair, ...]) -> tuple[Places, ...]:
+    return tuple(places_of(names, [pair]) for pair in pairs)
 
 
 def _thickness(tree: Tree, mounted: list[Mounted]) -> Iterator[BodyDistance]:

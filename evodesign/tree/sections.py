@@ -17,7 +17,16 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from evodesign.body.inertia import Inertia
-from evodesign.body.placement import Matrix, Scalar, Vector, cross, dot, rotate, scale, transpose
+from evodesign.body.placement import (
+    Matrix,
+    Scalar,
+    Vector,
+    dot,
+    perpendicular,
+    rotate,
+    scale,
+    transpose,
+)
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.errors import ModelError
 from evodesign.tree.model import Link, Tree
@@ -59,7 +68,7 @@ def section_of(tree: Tree, name: str, across: Vector | None = None) -> SectionCh
     growth = growth_of(tree, name)
     along, link = growth.axis, tree.link_by_name[name]
     if across is None:
-        return SectionChange(name, along, _perpendicular(along), growth.centre)
+        return SectionChange(name, along, perpendicular(along), growth.centre)
     size = math.sqrt(dot(across, across))
     if size == 0.0:
         raise ModelError(tree.name, f"section of {name}", "an axis of some length", "none")
@@ -84,14 +93,6 @@ def with_sections(tree: Tree, changes: Iterable[tuple[SectionChange, Scalar]]) -
             continue
         links[change.link] = _widened(links[change.link], change, factor)
     return tree.reshaped(tuple(links[link.name] for link in tree.links), tree.joints)
-
-
-def _perpendicular(along: Vector) -> tuple[Vector, Vector]:
-    """Two unit vectors across one of numbers, and across each other."""
-    least = min(range(3), key=lambda place: abs(along[place]))
-    first = cross(along, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))[least])
-    first = scale(1.0 / math.sqrt(dot(first, first)), first)
-    return first, cross(along, first)
 
 
 def _widened(link: Link, change: SectionChange, factor: Scalar) -> Link:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from evodesign.body.placement import Placement
 from evodesign.report.cad import kernel
-from evodesign.report.cad.parts import LinkPart, MotorPart, Parts, turned_to
+from evodesign.report.cad.parts import LinkPart, MotorPart, Parts
 
 LEAST_VOLUME = 1e-9
 """Parts that share less [m^3] touch at most."""
@@ -37,10 +37,7 @@ def motor_clashes(parts: Parts) -> Iterator[Clash]:
     """The motors that cut through bodies of the links on both sides of their joint."""
     links = {part.name: part for part in parts.links}
     for motor in parts.motors:
-        sides = {
-            motor.joint.parent: motor.link_from_motor,
-            motor.joint.child: Placement(rotation=turned_to(motor.joint.axis)),
-        }
+        sides = {motor.joint.parent: motor.link_from_motor, motor.joint.child: motor.child_from_motor}
         for name, link_from_motor in sides.items():
             if name in links:
                 yield from _of_motor(motor, link_from_motor, links[name])

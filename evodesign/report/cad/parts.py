@@ -10,12 +10,11 @@ has a ball, with its centre in the joint.
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from evodesign.body.placement import Matrix, Placement, Vector
+from evodesign.body.placement import Matrix, Placement, Vector, perpendicular, transpose
 from evodesign.body.shape import Cylinder, Solid
 from evodesign.hardware.actuators import Actuator
 from evodesign.tree.frames import link_frames
@@ -55,12 +54,14 @@ class MotorPart:
         joint: which it drives.
         actuator: of numbers.
         link_from_motor: its place in the joint's parent link, the cylinder's axis along z.
+        child_from_motor: likewise in the child link.
         root_from_motor: its place in the root link's frame.
     """
 
     joint: Joint
     actuator: Actuator
     link_from_motor: Placement
+    child_from_motor: Placement
     root_from_motor: Placement
 
     @property
@@ -129,12 +130,13 @@ def parts_of(tree: Tree, materials: Mapping[str, str]) -> Parts:
     for joint in tree.joints:
         if joint.kind is JointKind.FIXED:
             continue
-        link_from_axis = joint.parent_from_child @ Placement(rotation=turned_to(joint.axis))
+        child_from_axis = Placement(rotation=turned_to(joint.axis))
+        link_from_axis = joint.parent_from_child @ child_from_axis
         root_from_axis = frames[joint.parent] @ link_from_axis
         axes.append(AxisPart(joint, root_from_axis))
         if joint.actuator is not None:
             along = _along(joint.actuator)
-            places = link_from_axis @ along, root_from_axis @ along
+            places = (each @ along for each in (link_from_axis, child_from_axis, root_from_axis))
             motors.append(MotorPart(joint, joint.actuator, *places))
     return Parts(
         tree=tree,
@@ -181,15 +183,4 @@ def _stems(names: Iterable[str]) -> dict[str, str]:
 
 def turned_to(axis: Vector) -> Matrix:
     """A rotation whose third column is a unit vector: it takes z there."""
-    z = tuple(float(each) for each in axis)
-    least = min(range(3), key=lambda i: abs(z[i]))
-    other = tuple(1.0 if i == least else 0.0 for i in range(3))
-    x = _cross(other, z)
-    length = math.sqrt(sum(each * each for each in x))
-    x = tuple(each / length for each in x)
-    y = _cross(z, x)
-    return tuple((x[i], y[i], z[i]) for i in range(3))  # type: ignore[return-value]
-
-
-def _cross(a: tuple[float, ...], b: tuple[float, ...]) -> tuple[float, ...]:
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+    return transpose((*perpendicular(axis), axis))
