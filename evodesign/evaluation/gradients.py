@@ -24,9 +24,10 @@ import numpy as np
 
 from evodesign.collision.zero_posture import built_in_slack, distance_along
 from evodesign.design.parameter import ParameterKind
-from evodesign.evaluation.sensitivities import ObjectiveSensitivity, Sensitivities, five_point
+from evodesign.evaluation.sensitivities import ObjectiveSensitivity, Sensitivities
 from evodesign.evaluation.sized_slopes import CaseDerivative, along_design, program_slopes, reach_along_design
 from evodesign.evaluation.trees_beside import STEP
+from evodesign.mechanics.robot_gradient import OF_MASSES
 from evodesign.motion.derivative import LiftDerivative
 from evodesign.motion.solution import MotionCase
 from evodesign.nlp.optimality import Array, NotDifferentiable
@@ -55,7 +56,7 @@ from evodesign.violations import BODIES_APART, HEIGHT, PARTS_APART
 MOST_CASES = 8
 """Cases of which each is logged for itself; a mean over more is logged alone."""
 
-OF_THE_ROBOT = frozenset({"mass", "com_height", "actuator_mass", "cost", PARTS_APART})
+OF_THE_ROBOT = frozenset({*OF_MASSES, "cost", PARTS_APART})
 """Objectives that depend on the robot's bodies alone."""
 
 Found = Array | NotDifferentiable
@@ -133,7 +134,7 @@ class _Design:
     @cached_property
     def _given(self) -> Array | NotDifferentiable | None:
         """The derivatives of what programs are given; None where that is the design itself."""
-        return program_slopes(self._result, self._as_given, self._trees)
+        return program_slopes(self._result, self._as_given, self._sensitivities.robot)
 
     @cached_property
     def _cases(self) -> list[CaseDerivative | NotDifferentiable]:
@@ -230,9 +231,9 @@ class _Design:
                         slope += derivative.along_torques(number, load_case, weights)
                     if quantity.by_speed is not None and isinstance(derivative, LiftDerivative):
                         slope += derivative.along_speeds(number, quantity.by_speed(scene, postures))
-                    if quantity.by_posture is None:
+                    if quantity.of_actuators:
                         slope += self._by_actuators(quantity, solution.case, postures)
-                    else:
+                    if quantity.by_posture is not None:
                         slopes = quantity.by_posture(scene, postures)
                         slope += self._by_posture(case, derivative, number, disturbance, slopes)
                     over_time.append((instant.time, value, slope))
@@ -265,15 +266,15 @@ class _Design:
         given = self._given if isinstance(self._given, np.ndarray) else np.eye(len(found))
         for position, parameter in enumerate(self._problem.space.parameters):
             if parameter.joints and not parameter.choices:
-                step, results = self._beside(position)
-                values = [quantity.value(result.scene_of(case), postures) for result in results]
-                found[position] = five_point(values, step)
+                step, *beside = self._beside(position)
+                below, above = (quantity.value(result.scene_of(case), postures) for result in beside)
+                found[position] = (above - below) / (2.0 * step)
         return np.asarray(found @ given)
 
-    def _beside(self, position: int) -> tuple[float, tuple[DesignResult, ...]]:
-        """The same postures with another value of a parameter: a step, and results at -2 to 2 steps."""
-        step, trees = self._trees.along(position)
-        return step, tuple(replace(self._result, tree=tree) for tree in trees)
+    def _beside(self, position: int) -> tuple[float, DesignResult, DesignResult]:
+        """The same postures with another value of a parameter: a step, and results below and above."""
+        step, below, above = self._trees.along(position)
+        return step, replace(self._result, tree=below), replace(self._result, tree=above)
 
     def _of_shared_reach(self) -> Found:
         people, robot = self._result.people_highest, self._result.reach.highest
@@ -331,12 +332,16 @@ class _Design:
     def _of_robot(self, name: str) -> Found:
         if isinstance(self._given, NotDifferentiable):
             return self._given
+        robot = self._sensitivities.robot
+        if robot is not None and name in OF_MASSES:
+            found = robot.of_masses(name, self._result.program_values)
+            return found if self._given is None else np.asarray(found @ self._given)
         found = np.zeros(len(self._values))
         for position, parameter in enumerate(self._problem.space.parameters):
             if not parameter.choices:
-                step, results = self._beside(position)
-                values = [objective_value(name, result) or 0.0 for result in results]
-                found[position] = five_point(values, step)
+                step, *beside = self._beside(position)
+                below, above = (objective_value(name, result) or 0.0 for result in beside)
+                found[position] = (above - below) / (2.0 * step)
         return found if self._given is None else np.asarray(found @ self._given)
 
 

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -28,6 +28,7 @@ from evodesign.design.parameter import DesignParameter
 from evodesign.evaluation.inner import InnerProblems, inner_problems
 from evodesign.evaluation.sized_slopes import CaseDerivative, along_design, program_slopes, reach_along_design
 from evodesign.evaluation.trees_beside import TreesBeside
+from evodesign.mechanics.robot_gradient import RobotGradient
 from evodesign.motion.derivative import LiftDerivative
 from evodesign.motion.solution import MotionCase
 from evodesign.nlp.optimality import Array, NotDifferentiable
@@ -157,15 +158,21 @@ class Sensitivities:
         self._inner = inner or inner_problems(problem, known)
         self._family = problem.space.family(problem.scene.designed_tree)
 
+    @cached_property
+    def robot(self) -> RobotGradient | None:
+        """Derivatives of what depends on the designed robot alone; None without one."""
+        designed = self._problem.scene.designed
+        return RobotGradient(self._family, designed[0], self._problem.stances) if designed else None
+
     def beside(self, result: DesignResult) -> TreesBeside:
         """The robots of designs beside one, from its results."""
-        return TreesBeside(self._family, result.program_values, result.tree)
+        return TreesBeside(self._family, result.program_values)
 
     def at(self, values: Sequence[float], result: DesignResult) -> DesignDerivative:
         """The tangent of a design from its results."""
         given = result.program_values
         cases = [self.of_case(given, solution) for solution in result.cases]
-        slopes = program_slopes(result, cases, self.beside(result))
+        slopes = program_slopes(result, cases, self.robot)
         highest, lowest = (self.of_reach(given, sense) for sense in (HIGHEST, LOWEST))
         return DesignDerivative(
             problem=self._problem,

@@ -14,42 +14,38 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import cached_property
 
 import numpy as np
 
 from evodesign.evaluation.sizing import BOUNDS
-from evodesign.evaluation.trees_beside import TreesBeside
 from evodesign.mechanics.agent import ROBOT
-from evodesign.mechanics.stance_case import StanceCase, StanceTorques
+from evodesign.mechanics.robot_gradient import RobotGradient
 from evodesign.motion.derivative import LiftDerivative
 from evodesign.nlp.optimality import Array, NotDifferentiable
 from evodesign.nlp.sensitivity import Limit, LimitTable
 from evodesign.posture.solution_derivative import PostureDerivative, ReachDerivative
 from evodesign.quantities.demand import Demand
 from evodesign.quantities.design_result import DesignResult
-from evodesign.quantities.stance_model import StanceModel
 
 CaseDerivative = PostureDerivative | LiftDerivative
 """Of a load held still, or of a lift."""
 
-_Torques = list[tuple[StanceCase, StanceTorques]]
-"""Of every standing case."""
-
 
 def program_slopes(
-    result: DesignResult, cases: Sequence[CaseDerivative | NotDifferentiable], beside: TreesBeside
+    result: DesignResult,
+    cases: Sequence[CaseDerivative | NotDifferentiable],
+    robot: RobotGradient | None,
 ) -> Array | NotDifferentiable | None:
     """The derivatives of what programs are given, by the design's parameters, shape (parameters, parameters).
 
     Args:
         result: of a design.
         cases: tangents of its postures by what programs are given, one per case.
-        beside: robots of other designs.
+        robot: derivatives of what depends on it alone; None without one.
     Returns:
         None where no actuator is sized: then both are the same.
     """
-    if not result.rated or result.standing is None:
+    if not result.rated or result.standing is None or robot is None:
         return None
     as_given, demand = replace(result, values=result.rated), result.demand
     if demand is None:
@@ -60,13 +56,12 @@ def program_slopes(
     tangents = [each for each in cases if isinstance(each, PostureDerivative)]
     count, places = len(result.values), result.space.margins
     by_given, by_margin = np.zeros((len(places), count)), np.zeros(len(places))
-    stances = _Stances(as_given, result.standing, beside)
     for row, place in enumerate(places):
         asked = float(np.abs(demand.torques[:, list(demand.members[row])]).max(initial=0.0))
         if not BOUNDS[0] < result.values[place] * asked < BOUNDS[1]:
             continue
         by_margin[row] = asked
-        by_given[row] = result.values[place] * _slope(as_given, stances, demand, row, tangents)
+        by_given[row] = result.values[place] * _slope(as_given, robot, demand, row, tangents)
     others = [place for place in range(count) if place not in places]
     slopes = np.eye(count)
     held = np.eye(len(places)) - by_given[:, list(places)]
@@ -77,7 +72,7 @@ def program_slopes(
 
 def _slope(
     result: DesignResult,
-    stances: _Stances,
+    robot: RobotGradient,
     demand: Demand,
     row: int,
     cases: Sequence[PostureDerivative],
@@ -92,7 +87,10 @@ def _slope(
     if case < len(lifted):
         number, instant, load_case = lifted[case]
         return cases[number].along_torques(instant, load_case, {ROBOT: {joint: sign}})
-    return stances.slope(int(case) - len(lifted), joint, demand)
+    number = int(case) - len(lifted)
+    alone, asked = demand.alone[number], abs(float(demand.torques[case, columns[column]]))
+    weights = {joint: asked / alone.torques[joint]}
+    return robot.stances[number].along(result.values, alone.offsets, weights)
 
 
 def _places(result: DesignResult) -> Iterator[tuple[int, int, int]]:
@@ -101,43 +99,6 @@ def _places(result: DesignResult) -> Iterator[tuple[int, int, int]]:
         for instant, each in enumerate(solution.instants):
             for load_case in range(1 + len(each.disturbed)):
                 yield number, instant, load_case
-
-
-class _Stances:
-    """Torques of standing cases beside a design, for differences: one is found in half a millisecond.
-
-    Args:
-        result: of the design, with the values that programs are given.
-        model: of the cases.
-        beside: robots of other designs.
-    """
-
-    def __init__(self, result: DesignResult, model: StanceModel, beside: TreesBeside) -> None:
-        self._result, self._model, self._trees = result, model, beside
-
-    def slope(self, case: int, joint: str, demand: Demand) -> Array:
-        """Of what a case asks of a joint, by what programs are given."""
-        model = self._model
-        known = self._size(model.torques(self._result.tree), case, joint)
-        asked = demand.torques[case - len(model.cases), demand.joints.index(joint)]
-        differences = [
-            (self._size(above, case, joint) - self._size(below, case, joint)) / (2.0 * step)
-            for step, below, above in self._beside
-        ]
-        return abs(float(asked)) / known * np.array(differences)
-
-    @cached_property
-    def _beside(self) -> list[tuple[float, _Torques, _Torques]]:
-        """By place of a value: the step, and the torques a step below and above."""
-        found = []
-        for place in range(len(self._result.values)):
-            step, (_, below, _, above, _) = self._trees.along(place)
-            found.append((step, self._model.torques(below), self._model.torques(above)))
-        return found
-
-    @staticmethod
-    def _size(found: _Torques, case: int, joint: str) -> float:
-        return abs(float(found[case][1].torques[joint]))
 
 
 def along_design(

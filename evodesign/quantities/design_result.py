@@ -137,7 +137,7 @@ class CaseQuantity:
     speeds of joints, for one that depends on them as well, and `by_posture` that by postures and wrenches,
     for one of people that depends on these (and on torques, if it has `by_torque` too). Without both
     `by_torque` and `by_posture`, gradients are taken by differences along the exact tangent, which costs
-    many times as much.
+    many times as much. `of_actuators` says whether the formula may hold numbers of the robot's actuators.
     """
 
     unit: str
@@ -145,6 +145,7 @@ class CaseQuantity:
     by_torque: ByTorque | None = None
     by_speed: ByTorque | None = None
     by_posture: ByPosture | None = None
+    of_actuators: bool = True
 
     @property
     def has_slopes(self) -> bool:

@@ -112,7 +112,7 @@ def _by_effort(person: Agent, posture: AgentPosture) -> dict[str, float]:
     return {hardest.joint: hardest.share / hardest.torque} if hardest and hardest.torque else {}
 
 
-ROBOT_TORQUE = over_agents(robots, norm, "N m", torque_norm, by_torque=_by_norm)
+ROBOT_TORQUE = over_agents(robots, norm, "N m", torque_norm, by_torque=_by_norm, of_actuators=False)
 """|tau|_2 of all joints of all robots."""
 
 HUMAN_TORQUE = over_agents(people, norm, "N m", torque_norm, by_torque=_by_norm)

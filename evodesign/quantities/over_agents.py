@@ -67,6 +67,7 @@ def over_agents(
     by_torque: AgentSlopes | None = None,
     by_speed: AgentSlopes | None = None,
     by_posture: Callable[[Agent, AgentPosture], PostureSlopes] | None = None,
+    of_actuators: bool = True,
 ) -> CaseQuantity:
     """The quantity that a value of each of some agents is of them all.
 
@@ -78,6 +79,7 @@ def over_agents(
         by_torque: its derivatives by torques, as in `CaseQuantity`.
         by_speed: likewise by speeds.
         by_posture: likewise by posture and wrenches.
+        of_actuators: whether the value of a robot may depend on its actuators beside torques and speeds.
     """
 
     def of_each(scene: Scene, postures: Mapping[str, AgentPosture]) -> list[tuple[Agent, AgentPosture]]:
@@ -109,4 +111,5 @@ def over_agents(
             for agent, posture, weight in weighted(scene, postures)
         }
 
-    return CaseQuantity(unit, of_all, slopes(by_torque), slopes(by_speed), posture_slopes())
+    driven = of_actuators and who is not people
+    return CaseQuantity(unit, of_all, slopes(by_torque), slopes(by_speed), posture_slopes(), driven)
