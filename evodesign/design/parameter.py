@@ -110,6 +110,7 @@ class DesignParameter:
         mountings: of the actuator at each of its joints; none where it is a ball.
         gear: of an actuator of any size, whose law it follows.
         duty: in what rhythm an actuator holds; None where nobody says.
+        keeps_mass: whether links keep their masses whatever their length, and not their densities.
     """
 
     kind: ParameterKind
@@ -125,6 +126,7 @@ class DesignParameter:
     mountings: tuple[Mounting, ...] = ()
     gear: Gear = Gear.PLANETARY
     duty: Duty | None = None
+    keeps_mass: bool = False
 
     @property
     def choices(self) -> tuple[float, ...]:

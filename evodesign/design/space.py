@@ -120,8 +120,9 @@ class DesignSpace:
         """The trees of all designs of an unscaled one."""
         lengths = [link for parameter in self._of(ParameterKind.LENGTH) for link in parameter.links]
         growths = {link: growth_of(tree, link) for link in lengths}
+        kept = frozenset(link for each in self.parameters if each.keeps_mass for link in each.links)
         fixed = [wall for wall in self.walls if wall.thickness is not None and wall.density is not None]
-        return Family(self, with_walls(tree, walls_of_links(fixed, {})), growths)
+        return Family(self, with_walls(tree, walls_of_links(fixed, {})), growths, kept)
 
     def resized(self, tree: Tree, values: Sequence[Scalar]) -> Tree:
         """The tree of a design.
@@ -210,11 +211,13 @@ class Family:
         space: of the designs.
         tree: unscaled, with the walls that all designs have.
         growths: how each link of a length parameter grows.
+        kept: links that keep their masses whatever their length.
     """
 
     space: DesignSpace
     tree: Tree
     growths: Mapping[str, Growth]
+    kept: frozenset[str]
 
     def resized(self, values: Sequence[Scalar]) -> Tree:
         """The tree of a design; values as in `DesignSpace.resized`."""
@@ -226,7 +229,8 @@ class Family:
         for parameter, value in zip(self.space.parameters, values, strict=True):
             by_kind[parameter.kind].update(dict.fromkeys(parameter.links, value))
         tree = with_walls(self.tree, walls_of_links(self.space.walls, by_kind[ParameterKind.WALL]))
-        tree = resize(tree, by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY], self.growths)
+        lengths, densities = by_kind[ParameterKind.LENGTH], by_kind[ParameterKind.DENSITY]
+        tree = resize(tree, lengths, densities, self.growths, self.kept)
         pairs = [*zip(self.space.parameters, values, strict=True)]
         sections = [(section, value) for parameter, value in pairs for section in parameter.sections]
         if sections:

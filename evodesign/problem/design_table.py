@@ -15,12 +15,16 @@ Margin = Annotated[float, Meta(ge=1.0)]
 
 
 class LengthTable(Table, frozen=True):
-    """`[[design.length]]`: a length multiplier shared by links."""
+    """`[[design.length]]`: a length multiplier shared by links.
+
+    With `keep_mass` their masses stay those of the file, so that densities fall as links get longer.
+    """
 
     name: Name
     links: Annotated[tuple[Name, ...], Meta(min_length=1)]
     lower: Positive
     upper: Positive
+    keep_mass: bool = False
 
 
 class SectionTable(Table, frozen=True):

@@ -82,8 +82,10 @@ def space_of(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSp
         InputError: no parameter, or one that the tree has no use for.
     """
     parameters = [
-        DesignParameter(ParameterKind.LENGTH, t.name, t.links, t.lower, t.upper) for t in tables.design.length
+        DesignParameter(ParameterKind.LENGTH, t.name, t.links, t.lower, t.upper, keeps_mass=t.keep_mass)
+        for t in tables.design.length
     ]
+    _refuse_kept_mass(tables, source)
     parameters += density_parameters(tables, source)
     parameters += section_parameters(tables, source, tree)
     joints = joint_parameters(tables, source, tree)
@@ -114,6 +116,21 @@ def space_of(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSp
     except InputError as error:
         raise InputError(source.path, f"design ({error.key})", error.wanted, error.found) from error
     return space
+
+
+def _refuse_kept_mass(tables: ProblemFile, source: ProblemSource) -> None:
+    """Refuse links that keep their masses and get others from a density or a wall."""
+    others = {
+        link: f"[[design.{kind}]] '{each.name}'"
+        for kind, of_kind in (("density", tables.design.density), ("wall", tables.design.wall))
+        for each in of_kind
+        for link in each.links
+    }
+    for position, table in enumerate(tables.design.length):
+        for link in table.links:
+            if table.keep_mass and link in others:
+                wanted = f"false, as {others[link]} gives '{link}' its mass"
+                raise InputError(source.path, f"design.length[{position}].keep_mass", wanted, "true")
 
 
 def _check_parameter(

@@ -133,6 +133,7 @@ def _parameter(parameter: DesignParameter, tree: Tree) -> dict[str, Any]:
         "unit": parameter.record.unit,
         **({"materials": [each.name for each in parameter.materials]} if parameter.materials else {}),
         **({"joints": joints} if (joints := _joints(parameter)) else {}),
+        **({"keep_mass": True} if parameter.keeps_mass else {}),
         **({"models": [each.model for each in parameter.models]} if parameter.models else {}),
         "links": [_link(tree.link_by_name[name], tree, grows=grows) for name in parameter.links],
     }

@@ -20,7 +20,7 @@ its main solid's centre and a piece of length e put in: end pieces keep their si
 Mass and inertia are those of the resized solids, so a link has one density, also when made of several solids.
 A link without solids, whose inertia is the file's, is stretched whole (`stretch`); its density can change if
 it has shapes or watertight meshes, whose volume is known. l = 1 with the file's density gives the file's tree
-back. Multipliers and densities are numbers or symbolic expressions.
+back. A link that keeps its mass m has the density rho m / m', m' its mass at rho. Values may be symbolic.
 
 Source: Sartore et al. 2022, Section III-A and IV; the rules for child joints and composites are ours
 (docs/model.md).
@@ -29,7 +29,7 @@ Source: Sartore et al. 2022, Section III-A and IV; the rules for child joints an
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from evodesign.body.inertia import Inertia
@@ -180,6 +180,7 @@ def resize(
     lengths: Mapping[str, Scalar],
     densities: Mapping[str, Scalar],
     growths: Mapping[str, Growth] | None = None,
+    kept: Collection[str] = (),
 ) -> Tree:
     """The tree with some links lengthened and some of another density.
 
@@ -188,6 +189,7 @@ def resize(
         lengths: length multiplier [-] by link name.
         densities: density [kg/m^3] by link name, for all solids of the link.
         growths: of the links that are lengthened, if they are known already.
+        kept: links that keep their masses.
     Returns:
         A tree of the same form; links and joints that do not change are the same objects.
     Raises:
@@ -198,6 +200,10 @@ def resize(
     for name in densities:
         _changeable(tree, name, "density")
     links = tuple(_resized_link(link, growths, lengths, densities) for link in tree.links)
+    links = tuple(
+        _of_mass(link, old.mass) if link is not old and link.name in kept else link
+        for link, old in zip(links, tree.links, strict=True)
+    )
     joints = tuple(_moved_joint(joint, growths, lengths) for joint in tree.joints)
     return tree.reshaped(links, joints)
 
@@ -227,6 +233,14 @@ def _resized_link(
         looks = tuple(stretched_look(look, growth.axis, factor, growth.anchor) for look in looks)
         meshes = tuple(stretched_mesh(mesh, growth.axis, factor, growth.anchor) for mesh in meshes)
     return replace(link, solids=solids, own_inertia=inertia, looks=looks, meshes=meshes)
+
+
+def _of_mass(link: Link, mass: Scalar) -> Link:
+    """The link at densities that give it a mass [kg]."""
+    share, own = mass / link.mass, link.own_inertia
+    inertia = Inertia(share * own.mass, own.center, scaled(share, own.about_center))
+    solids = tuple(replace(solid, density=share * solid.density) for solid in link.solids)
+    return replace(link, solids=solids, own_inertia=inertia)
 
 
 def _stretched(solid: Solid, growth: Growth, factor: Scalar) -> Solid:

@@ -331,3 +331,25 @@ def test_a_longer_link_is_one_cut_across_with_a_piece_put_in(
     assert found.mass == pytest.approx(wanted.mass, rel=1e-12)
     assert np.allclose(found.center, wanted.center, rtol=1e-12)
     assert np.allclose(found.about_center, wanted.about_center, rtol=1e-10, atol=1e-13)
+
+
+@given(st.floats(0.5, 2.0))
+def test_a_longer_link_of_the_same_mass_has_that_masss_inertia_and_exact_slopes(factor: float) -> None:
+    """Table I once more, with the old mass in the new shape; links without solids are no exception."""
+    mass, length = 500.0 * math.pi * 0.05**2 * 0.2, 0.2 * factor
+    tree = chain(Cylinder(0.05, 0.2), DOWN, (0.0, 0.0, -0.25))
+    longer = resize(tree, {"middle": factor}, {}, kept={"middle"}).link_by_name["middle"].inertia
+    across = mass * (3.0 * 0.05**2 + length**2) / 12.0
+    assert longer.mass == pytest.approx(mass, rel=1e-12)
+    assert longer.center[2] == pytest.approx(-length / 2.0)
+    assert np.allclose(np.diag(longer.about_center), (across, across, mass * 0.05**2 / 2.0), rtol=1e-12)
+    symbol = casadi.SX.sym("l")
+    symbolic = resize(tree, {"middle": symbol}, {}, kept={"middle"}).link_by_name["middle"].inertia
+    figures = casadi.vertcat(symbolic.mass, symbolic.center[2], symbolic.about_center[0][0])
+    slopes = casadi.Function("slopes", [symbol], [casadi.jacobian(figures, symbol)])(factor)
+    assert np.allclose(np.array(slopes).ravel(), (0.0, -0.1, mass * 0.2 * length / 6.0), atol=1e-12)
+    whole = replace(tree.link_by_name["middle"], solids=(), own_inertia=tree.link_by_name["middle"].inertia)
+    bare = replace(tree, links=(tree.links[0], whole, tree.links[2]))
+    stretched = resize(bare, {"middle": factor}, {}, kept={"middle"}).link_by_name["middle"].inertia
+    assert stretched.mass == pytest.approx(mass, rel=1e-12)
+    assert np.allclose(stretched.about_center, longer.about_center, rtol=1e-9)
