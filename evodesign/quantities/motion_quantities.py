@@ -27,7 +27,8 @@ NEED_LIFTS = (POWER, ENERGY, LEAST_TIME)
 ENDURANCE = "endurance_s"
 """How long people can hold the loads."""
 
-OF_HOLDS = ("paper_cost", "paper2023_cost", ENDURANCE)
+PAPER_COSTS = ("paper_cost", "paper2023_cost", "paper2025_cost")
+OF_HOLDS = (*PAPER_COSTS, ENDURANCE)
 """Quantities of loads held still."""
 
 

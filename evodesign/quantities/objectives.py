@@ -61,6 +61,7 @@ from evodesign.quantities.motion_quantities import (
     ENERGY,
     L5S1_MOMENT,
     LEAST_TIME,
+    PAPER_COSTS,
     POWER,
     ROBOT_POWER,
     SPINE,
@@ -252,6 +253,22 @@ def paper2023_cost(result: DesignResult) -> float | None:
 MOTOR_RATIO = 160.0
 """Turns of a motor M or L per turn of its joint in the published code of Sartore et al. 2023."""
 
+
+def paper2025_cost(result: DesignResult) -> float | None:
+    """Sum of |tau_h|^2 + 1e-6 |tau_r|^2 over all undisturbed cases [(N m)^2].
+
+    The torque terms of the cost of 2025, 1e11 |tau_h|^2 + 1e5 |tau_r|^2, over 1e11. Source: published code of
+    Sartore et al. 2025 (ami-iit/paper_sartore_2025_ergocub_nature_machine_intelligence).
+    """
+    robot, human = (values_over_cases(t.value, result, disturbed=False) for t in (ROBOT_TORQUE, HUMAN_TORQUE))
+    if robot is None or human is None:
+        return None
+    return float(np.square(human).sum() + ROBOT_WEIGHT_2025 * np.square(robot).sum())
+
+
+ROBOT_WEIGHT_2025 = 1e-6
+"""Of a robot's squared torques where a person's have the weight 1."""
+
 HUMAN_EFFORT = "human_effort"
 """The hardest joint's share of the person's strength."""
 
@@ -263,8 +280,7 @@ NEED_PEOPLE = (
     BACK,
     ENDURANCE,
     "shared_reach_height",
-    "paper_cost",
-    "paper2023_cost",
+    *PAPER_COSTS,
 )
 """How the names of quantities end that are of people, or of robot and people together."""
 
@@ -272,7 +288,7 @@ NEED_ROBOTS = frozenset(
     {
         *("robot_torque", "peak_torque", "holding_power", "hand_deflection", WINDING, POWER, ENERGY),
         *("mass", "com_height", "actuator_mass", "cost", "torque_margin", "least_safety_factor"),
-        *(BODIES_APART, PARTS_APART, "paper_cost", "paper2023_cost"),
+        *(BODIES_APART, PARTS_APART, *PAPER_COSTS),
     }
 )
 """Quantities that are of robots."""
@@ -314,6 +330,7 @@ WHOLE: Mapping[str, ObjectiveKind] = {
     f"{WORST}{LEAST_TIME}": ObjectiveKind("s", worst_least_time),
     "paper_cost": ObjectiveKind("(10 N m)^2", paper_cost),
     "paper2023_cost": ObjectiveKind("N m", paper2023_cost),
+    "paper2025_cost": ObjectiveKind("(N m)^2", paper2025_cost),
 }
 """Values of a design as a whole."""
 
