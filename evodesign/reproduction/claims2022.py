@@ -11,10 +11,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class TorqueNorms:
-    """Torque norms of both agents at one height [N m]."""
+    """Torque norms of both agents at one height [N m], and the compression of the person's L5/S1 [N]."""
 
     robot: float
     human: float
+    back: float | None = None
 
 
 TorqueNormsByHeight = Mapping[float, TorqueNorms]

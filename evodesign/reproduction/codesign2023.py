@@ -11,10 +11,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
 
 from evodesign.errors import InputError
-from evodesign.evaluation.factory import evaluator_of
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.designs import read_designs
 from evodesign.problem.named_files import read_text
@@ -33,10 +31,9 @@ from evodesign.reproduction.claims2023 import (
     robot_claim,
     search_claim,
 )
-from evodesign.reproduction.experiment import STRICTER, Experiment, stricter_problem
+from evodesign.reproduction.experiment import STRICTER, Experiment, changed_problem, chosen
 from evodesign.reproduction.files2023 import SequelReproduction
 from evodesign.runlog.run import RunLog
-from evodesign.tree.model import Tree
 
 OURS = "search"
 COST, ROBOT_TORQUE = "paper2023_cost", "robot_torque"
@@ -54,38 +51,27 @@ def sequel_reproduction(experiment: Experiment) -> SequelReproduction:
     if [objective.name for objective in problem.objectives] != [COST, ROBOT_TORQUE]:
         found = ", ".join(objective.name for objective in problem.objectives)
         raise InputError(problem.source.path, "objectives", f"{COST} and {ROBOT_TORQUE}", found)
-    strict = stricter_problem(problem, [*STRICTER.values()][-1])
+    strict = changed_problem(problem, [*STRICTER.values()][-1])
     space, base = problem.space, problem.scene.designed_tree
     designs = dict(read_designs(read_text(ROBOTS, str(ROBOTS), ""), str(ROBOTS), space, base))
-    experiment.display.note("the robots of the sequel")
-    with experiment.display.precompute() as progress:
-        evaluator = evaluator_of(problem, effort.jobs, progress)
-    robots: dict[str, RobotFigures] = {}
-    trees: dict[str, Tree] = {}
-
-    def look_at(name: str, values: Sequence[float]) -> None:
-        result = evaluator.solve(values)
-        robots[name], trees[name] = _figures(name, problem, result), result.tree
-
-    for name, values in designs.items():
-        look_at(name, values)
+    results = experiment.solved(problem, designs, "the robots of the sequel")
+    ga = _figures(GA, problem, results[GA])
     run = experiment.logged(OURS, problem.settings(seed=effort.seed), effort.evaluations, 1.0)
     minutes = (time.monotonic() - experiment.began) / 60.0
-    chosen = _chosen(run, robots[GA].cost)
-    if chosen is not None:
-        designs[OURS] = tuple(chosen.assessment.design.values())
-        look_at(OURS, designs[OURS])
-    experiment.display.note("the robots with grips and collisions")
-    with experiment.display.precompute() as progress:
-        evaluator = evaluator_of(strict, effort.jobs, progress)
-    stricter = {name: _figures(name, strict, evaluator.solve(values)) for name, values in designs.items()}
-    search = _search_figures(run, robots[GA], minutes, effort.jobs)
+    ours = chosen(run, lambda each: _values(each)[0], ga.cost, lambda each: _values(each)[1])
+    if ours is not None:
+        designs[OURS] = tuple(ours.assessment.design.values())
+        results |= experiment.solved(problem, {OURS: designs[OURS]}, "the robot of the search")
+    robots = {name: _figures(name, problem, result) for name, result in results.items()}
+    strictly = experiment.solved(strict, designs, "the robots with grips and collisions")
+    stricter = {name: _figures(name, strict, result) for name, result in strictly.items()}
+    search = _search_figures(run, ga, minutes, effort.jobs)
     return SequelReproduction(
         robots=robots,
         stricter=stricter,
-        trees=trees,
+        trees={name: result.tree for name, result in results.items()},
         designs={name: space.named(values) for name, values in designs.items()},
-        chosen=None if chosen is None else chosen.number,
+        chosen=None if ours is None else ours.number,
         run=run,
         search=search,
         claims=(
@@ -112,15 +98,6 @@ def _values(evaluation: Evaluation) -> tuple[float, float]:
     if not evaluation.feasible:
         return math.inf, math.inf
     return evaluation.assessment.objectives[COST], evaluation.assessment.objectives[ROBOT_TORQUE]
-
-
-def _chosen(run: RunLog, cost: float | None) -> Evaluation | None:
-    """The design of a search that is shown; None of a run without feasible ones."""
-    feasible = [evaluation for evaluation in run.evaluations if evaluation.feasible]
-    as_good = [evaluation for evaluation in feasible if cost is not None and _values(evaluation)[0] <= cost]
-    if as_good:
-        return min(as_good, key=lambda evaluation: _values(evaluation)[1])
-    return min(feasible, key=_values, default=None)
 
 
 def _search_figures(run: RunLog, ga: RobotFigures, minutes: float, jobs: int) -> SearchFigures:

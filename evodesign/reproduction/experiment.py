@@ -1,10 +1,10 @@
-"""What the reproductions of both papers share: a problem, a bound on the work, and logged runs."""
+"""What the reproductions share: a problem, a bound on the work, logged runs, robots at their postures."""
 
 from __future__ import annotations
 
 import time
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,10 +14,17 @@ import tomli_w
 
 from evodesign import evolve
 from evodesign.errors import Interrupted
-from evodesign.evaluation.factory import evaluation_factory
+from evodesign.evaluation.evaluate import detail_of
+from evodesign.evaluation.factory import evaluation_factory, evaluator_of
+from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.pool.registry import make_pool
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.records import SearchSettings
+from evodesign.quantities.design_result import DesignResult
+from evodesign.quantities.person_quantities import compression
+from evodesign.records import Evaluation, SearchSettings
+from evodesign.report.scene_models import SceneModels
+from evodesign.reproduction.claims2022 import TorqueNorms, TorqueNormsByHeight
+from evodesign.reproduction.files2022 import ReproducedRobot
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.session import Display
@@ -87,11 +94,63 @@ class Experiment:
         self.display.note(f"{name}: its time is over after {len(run.evaluations)} of {budget} evaluations")
         return run
 
+    def solved(
+        self, problem: DesignProblem, robots: Mapping[str, Sequence[float]], what: str
+    ) -> dict[str, DesignResult]:
+        """Robots, given as parameter values, at their best postures in a problem."""
+        self.display.note(what)
+        with self.display.precompute() as progress:
+            evaluator = evaluator_of(problem, self.effort.jobs, progress)
+        return {name: evaluator.solve(values) for name, values in robots.items()}
 
-def stricter_problem(problem: DesignProblem, tables: Mapping[str, Mapping[str, Any]]) -> DesignProblem:
-    """A problem with keys of some tables added; of a list of tables, to each."""
+
+def torque_norms(result: DesignResult, person: str | None = None) -> TorqueNormsByHeight:
+    """What a design asks of both agents where it holds the load, with all people or one of them."""
+    return {
+        each.case.task.heights[0]: TorqueNorms(
+            robot=each.postures[ROBOT].torque_norm,
+            human=each.postures[HUMAN].torque_norm,
+            back=compression(result.scene_of(each.case).human, each.postures[HUMAN]),
+        )
+        for each in result.cases
+        if each.solved and person in (None, each.case.person)
+    }
+
+
+def reproduced(problem: DesignProblem, name: str, title: str, result: DesignResult) -> ReproducedRobot:
+    """A robot with the postures of the cases that were solved."""
+    cases = tuple(detail_of(case) for case in result.cases if case.solved)
+    return ReproducedRobot(name, title, SceneModels.of(problem.scene, result.tree), cases)
+
+
+def chosen(
+    run: RunLog,
+    capped: Callable[[Evaluation], float],
+    cap: float | None,
+    least: Callable[[Evaluation], float],
+) -> Evaluation | None:
+    """The design of a search that is shown.
+
+    Args:
+        run: the search.
+        capped: a value that may be at most `cap`; where none is, or without a cap, the least one is chosen.
+        cap: the largest value that will do.
+        least: what is least among those that will do.
+    Returns:
+        The design; None of a run without feasible ones.
+    """
+    feasible = [each for each in run.evaluations if each.feasible]
+    within = [each for each in feasible if cap is not None and capped(each) <= cap]
+    return min(within, key=least) if within else min(feasible, key=capped, default=None)
+
+
+def changed_problem(problem: DesignProblem, tables: Mapping[str, Any]) -> DesignProblem:
+    """A problem with keys of some tables added, of a list of tables to each; lists replace what there is."""
     changed = tomllib.loads(problem.source.text)
     for name, keys in tables.items():
         old = changed.get(name, {})
-        changed[name] = [{**each, **keys} for each in old] if isinstance(old, list) else {**old, **keys}
+        if isinstance(keys, list):
+            changed[name] = keys
+        else:
+            changed[name] = [{**each, **keys} for each in old] if isinstance(old, list) else {**old, **keys}
     return build_problem(msgspec.structs.replace(problem.source, text=tomli_w.dumps(changed)))

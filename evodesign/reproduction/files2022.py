@@ -197,12 +197,20 @@ def write_robot(directory: Path, name: str, tree: Tree) -> Path:
     Raises:
         InputError: the file cannot be written.
     """
-    path = directory / f"{name}.urdf"
+    return write_file(directory / f"{name}.urdf", urdf_text(tree))
+
+
+def write_file(path: Path, text: str) -> Path:
+    """Write a text into an existing directory.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
     try:
-        write_whole(path, urdf_text(tree).encode())
+        write_whole(path, text.encode())
     except OSError as error:
         wanted = "a directory that can be written"
-        raise InputError(str(directory), "", wanted, f"{error.strerror}") from error
+        raise InputError(str(path.parent), "", wanted, f"{error.strerror}") from error
     return path
 
 

@@ -7,13 +7,10 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
 
 from evodesign.analysis.front import front
 from evodesign.evaluation.baseline import GENERATION, Baseline, broken_limits, held_at, torque_difference
 from evodesign.evaluation.evaluate import detail_of
-from evodesign.evaluation.factory import evaluator_of
-from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.posture.formulations.codesign import JointSolution
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Evaluation
@@ -21,14 +18,19 @@ from evodesign.report.scene_models import SceneModels
 from evodesign.reproduction.claims2022 import (
     AT,
     PAPER_ORIGINAL,
-    TorqueNorms,
-    TorqueNormsByHeight,
     human_claim,
     reach_claim,
     reduction_claim,
     table_claim,
 )
-from evodesign.reproduction.experiment import MEASURED, STRICTER, Experiment, stricter_problem
+from evodesign.reproduction.experiment import (
+    MEASURED,
+    STRICTER,
+    Experiment,
+    changed_problem,
+    reproduced,
+    torque_norms,
+)
 from evodesign.reproduction.files2022 import Found, Published, ReproducedRobot, Reproduction
 from evodesign.runlog.run import RunLog
 from evodesign.searches.base import JOINT_STARTS
@@ -51,12 +53,15 @@ def reproduction(experiment: Experiment, without: DesignProblem, starts: int) ->
         without: the published setting.
         starts: of the joint problem.
     """
-    problems = {name: stricter_problem(experiment.problem, tables) for name, tables in STRICTER.items()}
+    problem = experiment.problem
+    problems = {name: changed_problem(problem, tables) for name, tables in STRICTER.items()}
     experiment.display.note("the published setting")
     published = _published(without)
     by_gradient = _found(experiment, GRADIENT, starts)
-    experiment.display.note("the robot as it is")
-    original, highest = _original(experiment)
+    space, tree = problem.space, problem.scene.designed_tree
+    robots = {ORIGINAL: space.unscaled(tree)}
+    as_it_is = experiment.solved(problem, robots, "the robot as it is")[ORIGINAL]
+    original = reproduced(problem, ORIGINAL, "the robot as it is", as_it_is)
     runs = (by_gradient, _found(experiment, EVOLUTION, starts))
     claims = [
         table_claim(
@@ -69,57 +74,28 @@ def reproduction(experiment: Experiment, without: DesignProblem, starts: int) ->
     every = [evaluation for one in runs for evaluation in one.run.evaluations if evaluation.feasible]
     least = min((_robot_norm(evaluation, AT) for evaluation in every), default=math.inf)
     for one in runs:
-        torque_norms = (original.torque_norms, one.robot.torque_norms)
+        norms = (original.torque_norms, one.robot.torque_norms)
         name = one.robot.name
         if not one.run.evaluations:
             experiment.display.note(f"{name}: had no time for a design, so no claim is held against it")
             continue
         claims += [
-            reach_claim(name, *torque_norms),
-            reduction_claim(name, *torque_norms, least, len(every)),
-            human_claim(name, *torque_norms),
+            reach_claim(name, *norms),
+            reduction_claim(name, *norms, least, len(every)),
+            human_claim(name, *norms),
         ]
-    space, tree = experiment.problem.space, experiment.problem.scene.designed_tree
-    robots = {ORIGINAL: space.unscaled(tree)} | {
-        one.robot.name: tuple(one.design.values()) for one in runs if one.design
-    }
+    robots |= {one.robot.name: tuple(one.design.values()) for one in runs if one.design}
+    problems["with a measured person"] = changed_problem(problem, MEASURED)
     stricter = {
-        name: _torque_norms(experiment, f"with limits {name}", problem, robots)
-        for name, problem in problems.items()
-    }
-    standing = stricter_problem(experiment.problem, MEASURED)
-    measured = _torque_norms(experiment, "with a measured person", standing, robots)
-    return Reproduction(published, original, highest, runs, tuple(claims), stricter, measured)
-
-
-def _torque_norms(
-    experiment: Experiment, name: str, problem: DesignProblem, robots: Mapping[str, Sequence[float]]
-) -> dict[str, TorqueNormsByHeight]:
-    """Torque norms of robots in another setting, which has a name."""
-    experiment.display.note(f"the robots {name}")
-    with experiment.display.precompute() as progress:
-        evaluator = evaluator_of(problem, experiment.effort.jobs, progress)
-    found: dict[str, TorqueNormsByHeight] = {}
-    for robot, values in robots.items():
-        found[robot] = {
-            solution.case.task.heights[0]: TorqueNorms(
-                solution.postures[ROBOT].torque_norm, solution.postures[HUMAN].torque_norm
-            )
-            for solution in evaluator.solve(values).cases
-            if solution.solved
+        name: {
+            robot: torque_norms(result)
+            for robot, result in experiment.solved(each, robots, f"the robots {name}").items()
         }
-    return found
-
-
-def _original(experiment: Experiment) -> tuple[ReproducedRobot, float | None]:
-    """The unscaled robot at its own best postures, and its reach [m]."""
-    problem = experiment.problem
-    with experiment.display.precompute() as progress:
-        evaluator = evaluator_of(problem, experiment.effort.jobs, progress)
-    result = evaluator.solve(problem.space.unscaled(problem.scene.designed_tree))
-    cases = tuple(detail_of(case) for case in result.cases if case.solved)
-    models = SceneModels.of(problem.scene, result.tree)
-    return ReproducedRobot(ORIGINAL, "the robot as it is", models, cases), result.reach.highest
+        for name, each in problems.items()
+    }
+    measured = stricter.pop("with a measured person")
+    highest = as_it_is.reach.highest
+    return Reproduction(published, original, highest, runs, tuple(claims), stricter, measured)
 
 
 def _found(experiment: Experiment, name: str, starts: int) -> Found:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import math
 import xml.etree.ElementTree as ET
@@ -126,10 +127,51 @@ def test_the_sequel_is_reproduced_with_its_robots_and_a_search(
     assert sorted(path.name for path in to.glob("*.urdf")) == sorted(f"{name}.urdf" for name in robots)
 
 
+@pytest.mark.usefixtures("few_designs_meet")
+def test_the_robots_of_2025_are_compared_beside_all_people_and_with_two_searches(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With the load at one height; costs are computed again from the table of torques."""
+    text = (Path(__file__).parents[2] / "problems" / "sartore2025.toml").read_text()
+    small = folder / "problems" / "third.toml"
+    small.write_text(text.replace("[0.8, 1.0, 1.2, 1.5]", "[1.0]") + SMALL)
+    to = tmp_path / "out"
+    given = {"problem": str(small), "paper": 2025, "evaluations": 4, "jobs": 1, "pool": "serial"}
+    reproduce(to, published=None, starts=None, seed=1, minutes=10.0, json=True, **given)
+    shown = json.loads(capsys.readouterr().out)
+    robots = shown["robots"]
+    assert list(robots) == ["iCub", "A", "B", "C", "by_cost", "by_front"]
+    assert {round(each["mass"], 6) for each in robots.values()} == {58.573865}
+    with (to / "robots.csv").open(newline="") as stream:
+        rows = [*csv.DictReader(stream)]
+    assert len(rows) == len(robots) * 4
+    for row in rows:
+        (held,) = robots[row["robot"]]["by_person"][row["person"]]
+        assert [held["robot"], held["human"], held["back"]] == [
+            float(row[key]) for key in ("robot_torque_n_m", "human_torque_n_m", "back_compression_n")
+        ]
+        if row["person"] == "least torque":
+            assert robots[row["robot"]]["cost"] == pytest.approx(
+                held["human"] ** 2 + 1e-6 * held["robot"] ** 2
+            )
+        if row["person"] == "male P95":
+            assert held["back"] > 1000.0 > robots[row["robot"]]["by_person"]["female P5"][0]["back"]
+    verdicts = [(claim["subject"], claim["by"]) for claim in shown["claims"]]
+    assert len(set(verdicts)) == len(verdicts) == 11
+    for name, search in shown["searches"].items():
+        run = read_run(to / name)
+        assert len(run.evaluations) == search["evaluations"] == 4
+        design = run.evaluations[search["evaluation"]].assessment.design
+        assert design.items() <= robots[name]["parameters"].items()
+    assert {path.suffix for path in to.iterdir() if path.is_file()} == {".csv", ".png", ".svg", ".urdf"}
+    assert {path.stem for path in to.glob("*.urdf")} == set(robots)
+
+
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({"paper": 2021}, "--paper: wanted 2022 or 2023, found 2021"),
+        ({"paper": 2021}, "--paper: wanted 2022 or 2023 or 2025, found 2021"),
+        ({"paper": 2025, "problem": "sartore2022"}, "objectives: wanted paper2025_cost, found paper_cost"),
         ({"paper": 2023, "starts": 5}, "--starts: wanted no such option with --paper 2023, found 5"),
         ({"paper": 2023, "published": "sartore2022"}, "--published: wanted no such option"),
         ({"paper": 2023, "problem": "sartore2022"}, "objectives: wanted paper2023_cost and robot_torque"),

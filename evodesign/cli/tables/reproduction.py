@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from rich.markup import escape
@@ -13,31 +13,47 @@ from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.reproduction.claims2022 import PAPER_OPTIMISED, Claim, TorqueNormsByHeight
 from evodesign.reproduction.files2022 import Reproduction
 
+AGENTS = ("human", "robot")
+"""Whose torque norms tables show."""
+
 
 def torque_table(done: Reproduction) -> FittedTable:
     """Table II of the paper with ours beside it, row under row."""
-    return _torque_table("Table II: torque norm [N m] by height of the load", "model", done.by_setting)
+    return height_table("Table II: torque norm [N m] by height of the load", "model", done.by_setting, AGENTS)
 
 
 def stricter_table(done: Reproduction) -> FittedTable:
     """What the direction of grasps and bodies that keep clear of each other change."""
     title = "Grips and collisions: torque norm [N m] by height of the load"
-    return _torque_table(title, "robot", done.by_limits)
+    return height_table(title, "robot", done.by_limits, AGENTS)
 
 
-def _torque_table(
-    title: str, of: str, by_setting: Mapping[str, Mapping[str, TorqueNormsByHeight]]
+def height_table(
+    title: str,
+    of: str,
+    by_setting: Mapping[str, Mapping[str, TorqueNormsByHeight]],
+    figures: Sequence[str],
+    setting: str = "setting",
 ) -> FittedTable:
+    """Figures by height of the load, one row for each model, figure and setting.
+
+    Args:
+        title: over the table.
+        of: what the models are.
+        by_setting: by model and setting.
+        figures: of `TorqueNorms`.
+        setting: what the settings are.
+    """
     heights = list(PAPER_OPTIMISED)
-    columns = [*names(of, "agent", "setting"), *numbers(*(f"{height:g} m" for height in heights))]
+    columns = [*names(of, "agent", setting), *numbers(*(f"{height:g} m" for height in heights))]
     table = titled(title, columns, keys=3)
     for model, rows in by_setting.items():
-        for agent in ("human", "robot"):
+        for figure in figures:
             for number, (setting, torque_norms) in enumerate(rows.items()):
                 values = [
-                    rounded(getattr(torque_norms[h], agent)) if h in torque_norms else "-" for h in heights
+                    rounded(getattr(torque_norms[h], figure)) if h in torque_norms else "-" for h in heights
                 ]
-                first = (model, agent) if number == 0 else ("", "")
+                first = (model, figure) if number == 0 else ("", "")
                 table.add_row(*first, setting, *values, end_section=number == len(rows) - 1)
     return table
 

@@ -1,0 +1,203 @@
+"""The robots of 2025 beside the iCub, with the paper's person and measured ones, and two searches of ours.
+
+The published robots differ from ours in where hips and chest are (`populations/sartore2025_robots.toml`), so
+the problem gets these two offsets as parameters beside its lengths; in robots of the searches they are zero.
+One search minimises the paper's cost. The other has the three objectives of this project; shown is its design
+of least robot torque among those that reach as high as B and beside which the person needs no more torque.
+
+Source: Sartore et al. 2025, published code (ami-iit/paper_sartore_2025_ergocub_nature_machine_intelligence).
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from evodesign.errors import InputError
+from evodesign.problem.build import DesignProblem
+from evodesign.problem.designs import read_designs
+from evodesign.problem.named_files import read_text
+from evodesign.problem.shipped import SHIPPED
+from evodesign.problem.source import read_source
+from evodesign.quantities.design_result import DesignResult
+from evodesign.quantities.objectives import objective_value
+from evodesign.records import Evaluation
+from evodesign.reproduction.claims2022 import Claim
+from evodesign.reproduction.claims2025 import (
+    BY_COST,
+    BY_FRONT,
+    LOWER,
+    OPTIMISED,
+    ErgonomicRobot,
+    cost_claim,
+    front_claim,
+    human_claim,
+    reach_claim,
+    robot_claim,
+)
+from evodesign.reproduction.experiment import (
+    MEASURED,
+    Experiment,
+    changed_problem,
+    chosen,
+    reproduced,
+    torque_norms,
+)
+from evodesign.reproduction.files2025 import ErgonomicReproduction
+from evodesign.runlog.run import RunLog
+
+COST, HUMAN, ROBOT = "paper2025_cost", "human_torque", "robot_torque"
+REACH = "reach_height"
+OUR_OBJECTIVES = {"minimise": [ROBOT, HUMAN], "maximise": [REACH]}
+DEFAULT = "icub-lifting"
+"""The problem whose people are the measured ones beside the paper's."""
+
+ROBOTS = SHIPPED.parent / "populations" / "sartore2025_robots.toml"
+UP, FARTHEST = [0.0, 0.0, 1.0], 0.03
+JOINTS = [
+    {"name": "hips", "joints": ["l_hip_pitch", "r_hip_pitch"]},
+    {"name": "chest", "joints": ["torso_yaw"]},
+]
+"""Where the published robots' joints differ from ours, up or down by at most 30 mm."""
+
+AS_PUBLISHED, AS_MEASURED = "least torque", "measured posture"
+"""The paper's person as the paper has it, and standing as people do who were measured."""
+
+
+def with_joints(problem: DesignProblem, tables: Mapping[str, Any] | None = None) -> DesignProblem:
+    """The problem with the offsets of the published robots as parameters, and with other tables changed."""
+    offsets = [{**joint, "offset_m": [-FARTHEST, FARTHEST], "along": UP} for joint in JOINTS]
+    return changed_problem(problem, {"design": {"joint": offsets}, **(tables or {})})
+
+
+def published_robots(problem: DesignProblem) -> dict[str, tuple[float, ...]]:
+    """Parameter values of the iCub and of robots A, B and C, of a problem `with_joints`."""
+    text = read_text(ROBOTS, str(ROBOTS), "")
+    return read_designs(text, str(ROBOTS), problem.space, problem.scene.designed_tree)
+
+
+def ergonomic_reproduction(experiment: Experiment) -> ErgonomicReproduction:
+    """Run everything.
+
+    Raises:
+        InputError: the problem does not minimise the cost of 2025, or has other parameters than its robots.
+    """
+    problem = experiment.problem
+    if [objective.name for objective in problem.objectives] != [COST]:
+        found = ", ".join(objective.name for objective in problem.objectives)
+        raise InputError(problem.source.path, "objectives", COST, found)
+    offered = with_joints(problem)
+    designs = published_robots(offered)
+    results = experiment.solved(offered, designs, "the robots of 2025")
+    optimised = {name: results[name] for name in OPTIMISED}
+    runs, numbers = _searches(experiment, optimised)
+    still = [0.0] * (len(offered.space.parameters) - len(problem.space.parameters))
+    ours = {
+        name: (*run.evaluations[number].assessment.design.values(), *still)
+        for name, run in runs.items()
+        if (number := numbers[name]) is not None
+    }
+    designs |= ours
+    results |= experiment.solved(offered, ours, "the robots of our searches")
+    others = _beside_others(experiment, designs)
+    robots = {
+        name: ErgonomicRobot(
+            mass=float(result.tree.mass),
+            highest=result.reach.highest,
+            cost=objective_value(COST, result),
+            by_person={
+                AS_PUBLISHED: torque_norms(result),
+                **{label: torque_norms(beside[name], person) for label, person, beside in others},
+            },
+        )
+        for name, result in results.items()
+    }
+    return ErgonomicReproduction(
+        robots=robots,
+        pictured=tuple(reproduced(offered, name, f"robot {name}", each) for name, each in results.items()),
+        designs={name: offered.space.named(values) for name, values in designs.items()},
+        runs=runs,
+        chosen=numbers,
+        claims=_claims(robots, problem, runs, optimised),
+    )
+
+
+def _searches(
+    experiment: Experiment, optimised: Mapping[str, DesignResult]
+) -> tuple[dict[str, RunLog], dict[str, int | None]]:
+    """Our two searches, and the number of the design of each that is shown."""
+    effort, problem = experiment.effort, experiment.problem
+    ours = replace(experiment, problem=changed_problem(problem, {"objectives": OUR_OBJECTIVES}))
+    runs = {
+        BY_COST: experiment.logged(BY_COST, problem.settings(seed=effort.seed), effort.evaluations, 0.5),
+        BY_FRONT: ours.logged(
+            BY_FRONT, ours.problem.settings("nsga2", 48, effort.seed), effort.evaluations, 1.0
+        ),
+    }
+    torque, reach = (objective_value(each, optimised["B"]) for each in (HUMAN, REACH))
+    cap = None if torque is None else torque * (1.0 + LOWER)
+
+    def reaching(each: Evaluation) -> float:
+        return _objective(HUMAN)(each) if _objective(REACH)(each) >= (reach or 0.0) else math.inf
+
+    best = {
+        BY_COST: chosen(runs[BY_COST], _objective(COST), None, _objective(COST)),
+        BY_FRONT: chosen(runs[BY_FRONT], reaching, cap, _objective(ROBOT)),
+    }
+    return runs, {name: None if each is None else each.number for name, each in best.items()}
+
+
+def _objective(name: str) -> Callable[[Evaluation], float]:
+    return lambda each: each.assessment.objectives[name]
+
+
+def _beside_others(
+    experiment: Experiment, designs: Mapping[str, Sequence[float]]
+) -> list[tuple[str, str | None, dict[str, DesignResult]]]:
+    """The robots beside the paper's person in a measured posture, and beside the people of the default.
+
+    Returns:
+        Of each person a label, the name in the problem's cases, and the results of all robots.
+    """
+    standing = with_joints(experiment.problem, MEASURED)
+    people = with_joints(experiment.problem, {"human": tomllib.loads(read_source(DEFAULT).text)["human"]})
+    beside = experiment.solved(standing, designs, "beside a measured posture")
+    found: list[tuple[str, str | None, dict[str, DesignResult]]] = [(AS_MEASURED, None, beside)]
+    beside = experiment.solved(people, designs, f"beside the people of {DEFAULT}")
+    names = dict.fromkeys(case.person for case in people.cases)
+    return [*found, *((name, name, beside) for name in names)]
+
+
+def _claims(
+    robots: Mapping[str, ErgonomicRobot],
+    problem: DesignProblem,
+    runs: Mapping[str, RunLog],
+    optimised: Mapping[str, DesignResult],
+) -> tuple[Claim, ...]:
+    people = [*next(iter(robots.values())).by_person]
+    costs, front = (
+        [each for each in runs[name].evaluations if each.feasible] for name in (BY_COST, BY_FRONT)
+    )
+    dominating = {name: sum(_dominates(each, result) for each in front) for name, result in optimised.items()}
+    return (
+        reach_claim(robots, [height for task in problem.tasks for height in task.heights]),
+        *(human_claim(robots, person) for person in people),
+        *(robot_claim(robots, person) for person in people),
+        cost_claim(robots, [*map(_objective(COST), costs)]),
+        front_claim(robots, dominating, len(front)),
+    )
+
+
+def _dominates(each: Evaluation, robot: DesignResult) -> bool:
+    """Whether a design reaches as high with less robot torque and no more torque of the person."""
+    torque, human, reach = (objective_value(name, robot) for name in (ROBOT, HUMAN, REACH))
+    if torque is None or human is None or reach is None:
+        return False
+    return (
+        _objective(ROBOT)(each) < torque * (1.0 - LOWER)
+        and _objective(HUMAN)(each) < human * (1.0 + LOWER)
+        and _objective(REACH)(each) >= reach
+    )

@@ -1,0 +1,74 @@
+"""The robots of 2025 as they are built here, against the figures of their URDFs and what these reach."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+import pinocchio as pin
+import pytest
+
+from evodesign.errors import InputError
+from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.source import read_source
+from evodesign.reproduction.ergonomic2025 import published_robots, with_joints
+from evodesign.tree.urdf_write import urdf_text
+
+FRAMES_KG = 4.0
+"""Base, soles and IMU are links of 1 kg each in the URDFs, and frames without mass here."""
+
+SOLE_BELOW = 0.00515
+"""Here soles lie under the feet; in the URDFs they are as much higher [m]."""
+
+JOINTS_M = {
+    "A": (-0.0216, 0.0725, 0.163, -0.1237, -0.1075, -0.0709, -0.255989),
+    "B": (0.0019, 0.13445993, 0.17167529, -0.09688893, -0.11549243, -0.16569306, -0.29324047),
+    "C": (0.0019, 0.16188487, 0.18180085, -0.11100542, -0.14623290, -0.20381301, -0.32249295),
+}
+"""z of joint origins in their parents' frames in model_A, model_B, model_C: hip pitch, torso pitch,
+shoulder pitch, elbow, wrist pitch, hip yaw, ankle pitch. Torso yaw is at 0.06447 in all three."""
+
+
+@pytest.fixture(scope="module")
+def of_2025(repository: Path) -> DesignProblem:
+    return with_joints(build_problem(read_source(repository / "problems" / "sartore2025.toml")))
+
+
+def test_the_published_robots_weigh_the_same_and_have_the_joints_of_their_urdfs(
+    of_2025: DesignProblem,
+) -> None:
+    base = of_2025.scene.designed_tree
+    for name, values in published_robots(of_2025).items():
+        tree = of_2025.space.resized(base, values)
+        assert float(tree.mass) + FRAMES_KG == pytest.approx(62.57, abs=0.005)
+        for link in tree.links:
+            assert float(link.mass) == pytest.approx(float(base.link_by_name[link.name].mass), rel=1e-9)
+        if name == "iCub":
+            continue
+        model = pin.buildModelFromXML(urdf_text(tree))
+        data = model.createData()
+        pin.framesForwardKinematics(model, data, pin.neutral(model))
+        height = {each: data.oMi[model.getJointId(each)].translation[2] for each in model.names[1:]}
+        hip, torso, shoulder, elbow, wrist, thigh, ankle = JOINTS_M[name]
+        sole = data.oMf[model.getFrameId("l_sole")].translation[2]
+        raised = height["l_shoulder_pitch"] - sole
+        legs = hip - 0.009 - 0.0897 + thigh - 0.1062 + ankle - 0.035 - 0.0658
+        assert raised == pytest.approx(torso + 0.06447 + shoulder - legs + SOLE_BELOW, abs=5e-5)
+        origins = {"l_elbow": elbow, "l_wrist_pitch": wrist, "l_hip_yaw": thigh, "l_ankle_pitch": ankle}
+        for joint, wanted in origins.items():
+            found = tree.joint_by_name[joint].parent_from_child.translation
+            assert float(found[2]) == pytest.approx(wanted, abs=5e-5), joint
+
+
+def test_a_mass_is_kept_only_where_nothing_else_gives_it(repository: Path) -> None:
+    source = read_source(repository / "problems" / "sartore2025.toml")
+    density = (
+        '[[design.density]]\nname = "d"\nlinks = ["chest"]\nlower_kg_per_m3 = 1.0\nupper_kg_per_m3 = 9.0\n'
+    )
+    wall = '[[design.wall]]\nname = "w"\nlinks = ["chest"]\nthickness_m = 0.002\nmaterial = "abs"\n'
+    for table in (density, wall):
+        changed = msgspec.structs.replace(source, text=f"{source.text}\n{table}")
+        with pytest.raises(
+            InputError, match=r"design.length\[7\].keep_mass: wanted false, as .* gives 'chest'"
+        ):
+            build_problem(changed)
