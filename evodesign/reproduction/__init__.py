@@ -1,1 +1,1 @@
-"""What the two papers claim, their experiments again (robots, people, loads), and verdicts."""
+"""What the three papers claim, their experiments again (robots, people, loads), and verdicts."""

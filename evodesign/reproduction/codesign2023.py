@@ -31,7 +31,7 @@ from evodesign.reproduction.claims2023 import (
     robot_claim,
     search_claim,
 )
-from evodesign.reproduction.experiment import STRICTER, Experiment, changed_problem, chosen
+from evodesign.reproduction.experiment import STRICTER, Experiment, changed_problem, chosen, value_of
 from evodesign.reproduction.files2023 import SequelReproduction
 from evodesign.runlog.run import RunLog
 
@@ -58,7 +58,7 @@ def sequel_reproduction(experiment: Experiment) -> SequelReproduction:
     ga = _figures(GA, problem, results[GA])
     run = experiment.logged(OURS, problem.settings(seed=effort.seed), effort.evaluations, 1.0)
     minutes = (time.monotonic() - experiment.began) / 60.0
-    ours = chosen(run, lambda each: _values(each)[0], ga.cost, lambda each: _values(each)[1])
+    ours = chosen(run, value_of(COST), ga.cost, value_of(ROBOT_TORQUE))
     if ours is not None:
         designs[OURS] = tuple(ours.assessment.design.values())
         results |= experiment.solved(problem, {OURS: designs[OURS]}, "the robot of the search")

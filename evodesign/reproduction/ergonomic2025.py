@@ -12,10 +12,11 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from evodesign.design.parameter import ParameterKind
 from evodesign.errors import InputError
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.designs import read_designs
@@ -45,6 +46,7 @@ from evodesign.reproduction.experiment import (
     chosen,
     reproduced,
     torque_norms,
+    value_of,
 )
 from evodesign.reproduction.files2025 import ErgonomicReproduction
 from evodesign.runlog.run import RunLog
@@ -83,22 +85,26 @@ def ergonomic_reproduction(experiment: Experiment) -> ErgonomicReproduction:
     """Run everything.
 
     Raises:
-        InputError: the problem does not minimise the cost of 2025, or has other parameters than its robots.
+        InputError: the problem does not minimise the cost of 2025, or has other parameters than lengths, or
+            than its robots.
     """
     problem = experiment.problem
     if [objective.name for objective in problem.objectives] != [COST]:
         found = ", ".join(objective.name for objective in problem.objectives)
         raise InputError(problem.source.path, "objectives", COST, found)
+    for parameter in problem.space.parameters:
+        if parameter.kind is not ParameterKind.LENGTH:
+            raise InputError(problem.source.path, "design", "lengths alone", parameter.name)
     offered = with_joints(problem)
     designs = published_robots(offered)
     results = experiment.solved(offered, designs, "the robots of 2025")
     optimised = {name: results[name] for name in OPTIMISED}
-    runs, numbers = _searches(experiment, optimised)
+    runs, found_by = _searches(experiment, optimised)
     still = [0.0] * (len(offered.space.parameters) - len(problem.space.parameters))
     ours = {
-        name: (*run.evaluations[number].assessment.design.values(), *still)
-        for name, run in runs.items()
-        if (number := numbers[name]) is not None
+        name: (*each.assessment.design.values(), *still)
+        for name, each in found_by.items()
+        if each is not None
     }
     designs |= ours
     results |= experiment.solved(offered, ours, "the robots of our searches")
@@ -120,15 +126,15 @@ def ergonomic_reproduction(experiment: Experiment) -> ErgonomicReproduction:
         pictured=tuple(reproduced(offered, name, f"robot {name}", each) for name, each in results.items()),
         designs={name: offered.space.named(values) for name, values in designs.items()},
         runs=runs,
-        chosen=numbers,
+        chosen={name: None if each is None else each.number for name, each in found_by.items()},
         claims=_claims(robots, problem, runs, optimised),
     )
 
 
 def _searches(
     experiment: Experiment, optimised: Mapping[str, DesignResult]
-) -> tuple[dict[str, RunLog], dict[str, int | None]]:
-    """Our two searches, and the number of the design of each that is shown."""
+) -> tuple[dict[str, RunLog], dict[str, Evaluation | None]]:
+    """Our two searches, and the design of each that is shown; None of one without feasible designs."""
     effort, problem = experiment.effort, experiment.problem
     ours = replace(experiment, problem=changed_problem(problem, {"objectives": OUR_OBJECTIVES}))
     runs = {
@@ -141,17 +147,12 @@ def _searches(
     cap = None if torque is None else torque * (1.0 + LOWER)
 
     def reaching(each: Evaluation) -> float:
-        return _objective(HUMAN)(each) if _objective(REACH)(each) >= (reach or 0.0) else math.inf
+        return value_of(HUMAN)(each) if value_of(REACH)(each) >= (reach or 0.0) else math.inf
 
-    best = {
-        BY_COST: chosen(runs[BY_COST], _objective(COST), None, _objective(COST)),
-        BY_FRONT: chosen(runs[BY_FRONT], reaching, cap, _objective(ROBOT)),
+    return runs, {
+        BY_COST: chosen(runs[BY_COST], value_of(COST), None, value_of(COST)),
+        BY_FRONT: chosen(runs[BY_FRONT], reaching, cap, value_of(ROBOT)),
     }
-    return runs, {name: None if each is None else each.number for name, each in best.items()}
-
-
-def _objective(name: str) -> Callable[[Evaluation], float]:
-    return lambda each: each.assessment.objectives[name]
 
 
 def _beside_others(
@@ -186,7 +187,7 @@ def _claims(
         reach_claim(robots, [height for task in problem.tasks for height in task.heights]),
         *(human_claim(robots, person) for person in people),
         *(robot_claim(robots, person) for person in people),
-        cost_claim(robots, [*map(_objective(COST), costs)]),
+        cost_claim(robots, [*map(value_of(COST), costs)]),
         front_claim(robots, dominating, len(front)),
     )
 
@@ -197,7 +198,7 @@ def _dominates(each: Evaluation, robot: DesignResult) -> bool:
     if torque is None or human is None or reach is None:
         return False
     return (
-        _objective(ROBOT)(each) < torque * (1.0 - LOWER)
-        and _objective(HUMAN)(each) < human * (1.0 + LOWER)
-        and _objective(REACH)(each) >= reach
+        value_of(ROBOT)(each) < torque * (1.0 - LOWER)
+        and value_of(HUMAN)(each) < human * (1.0 + LOWER)
+        and value_of(REACH)(each) >= reach
     )

@@ -123,6 +123,11 @@ def reproduced(problem: DesignProblem, name: str, title: str, result: DesignResu
     return ReproducedRobot(name, title, SceneModels.of(problem.scene, result.tree), cases)
 
 
+def value_of(name: str) -> Callable[[Evaluation], float]:
+    """An objective of feasible evaluations."""
+    return lambda each: each.assessment.objectives[name]
+
+
 def chosen(
     run: RunLog,
     capped: Callable[[Evaluation], float],

@@ -172,6 +172,7 @@ def test_the_robots_of_2025_are_compared_beside_all_people_and_with_two_searches
     [
         ({"paper": 2021}, "--paper: wanted 2022 or 2023 or 2025, found 2021"),
         ({"paper": 2025, "problem": "sartore2022"}, "objectives: wanted paper2025_cost, found paper_cost"),
+        ({"paper": 2025, "published": "sartore2022"}, "--published: wanted no such option with --paper 2025"),
         ({"paper": 2023, "starts": 5}, "--starts: wanted no such option with --paper 2023, found 5"),
         ({"paper": 2023, "published": "sartore2022"}, "--published: wanted no such option"),
         ({"paper": 2023, "problem": "sartore2022"}, "objectives: wanted paper2023_cost and robot_torque"),
