@@ -150,6 +150,18 @@ def test_the_sequels_cost_is_that_of_the_worst_pair(result: DesignResult) -> Non
     assert objective_value("paper2023_cost", replace(of_two, cases=(lost, *cases[1:]))) is None
 
 
+def test_the_cost_of_2025_is_the_persons_squared_torques_and_a_millionth_of_the_robots(
+    result: DesignResult,
+) -> None:
+    torques = {
+        agent: sum(t * t for each in result.cases for t in each.postures[agent].torques.values())
+        for agent in (ROBOT, HUMAN)
+    }
+    assert objective_value("paper2025_cost", result) == pytest.approx(torques[HUMAN] + 1e-6 * torques[ROBOT])
+    lost = (replace(result.cases[0], status=Status.INFEASIBLE, instants=()), *result.cases[1:])
+    assert objective_value("paper2025_cost", replace(result, cases=lost)) is None
+
+
 def test_a_person_twice_as_strong_has_half_the_effort(result: DesignResult) -> None:
     strong = {
         name: replace(
