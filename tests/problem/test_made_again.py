@@ -1,4 +1,4 @@
-"""What a change of a problem has made ready again: docs/model.md has the table of these keys."""
+"""What a change of a problem has precomputed again, as docs/model.md, section 5, says."""
 
 from __future__ import annotations
 
