@@ -90,7 +90,7 @@ ENTRIES = (
     Entry(
         "shared_lifting",
         "shared-lifting",
-        "Rigid grasps, four people and disturbances; [who carries how much](sharing.md) is a parameter.",
+        "Rigid grasps, four people and disturbances; [the allocation of the load](sharing.md) is a parameter.",
     ),
     Entry(
         "three_people_three_loads",
