@@ -41,9 +41,9 @@ evodesign search PROBLEM {search}
 
 This page and its pictures are written by `python -m docs.write_gallery`. A front of 120 designs shows what
 a problem trades for what; it is not yet one to build from ([choosing.md](choosing.md#how-far-a-search-is)
-says how far a search is). Each large dot is a robot that no other one beats in all objectives; the two
+says how far a search is). Each large dot is a robot that no other one dominates; the two
 objectives that differ most along the front are the axes and the third is the colour. Small dots are
-feasible robots that are beaten. The star is the unscaled robot, where it is feasible.
+feasible robots that are dominated. The star is the unscaled robot, where it is feasible.
 """
 
 
@@ -90,7 +90,7 @@ ENTRIES = (
     Entry(
         "shared_lifting",
         "shared-lifting",
-        "Rigid grasps, four people and disturbances; [the allocation of the load](sharing.md) is a parameter.",
+        "Rigid grasps, four people, disturbances; the [allocation](sharing.md) of the load is a parameter.",
     ),
     Entry(
         "three_people_three_loads",
