@@ -3,7 +3,7 @@
     python -m benchmarks.clear_pictures [--front RUN]
 
 Of docs/benchmarks.md: the unscaled robot of point-grasp with a `[collisions]` table, and the person, at the
-lowest and the highest load height of the task: from the front, where each is drawn without the other, and from the
+lowest and the highest load of the task: from the front, where each is drawn without the other, and from the
 side. Of docs/default.md and docs/sharing.md, with a run of the default problem, or of the shared one with the
 table: the designs of least robot torque and of least human torque with up to three people, likewise.
 """
