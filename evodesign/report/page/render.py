@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import base64
 import gzip
+import math
+from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -17,6 +19,7 @@ from plotly.offline import get_plotlyjs
 
 from evodesign.report.page.columns import side_by_side
 from evodesign.report.page.content import Content, DesignContent
+from evodesign.report.page.downloads import DIGITS
 
 TEMPLATE = files("evodesign.report.page").joinpath("template")
 
@@ -63,6 +66,21 @@ SCRIPTS = (
 """In the order in which they stand in the page; all share one scope."""
 
 
+STEPS: Mapping[str, tuple[int, float]] = {
+    "postures": (4_000, 1e6),
+    "static_torques": (4_000, 1e6),
+    "slices": (4_000, math.inf),
+    "hardware": (4_000, math.inf),
+    "links": (40_000, math.inf),
+    "joints": (40_000, math.inf),
+    "urdf": (40_000, math.inf),
+}
+"""Into how many steps the numbers of designs are parted at least, by field, and how many a unit has at most.
+
+Of a joint that turns by 1 rad a step is at most 0.014 degrees; below a micrometre or a millionth of a newton
+metre stands what a solver leaves."""
+
+
 def page_html(content: Content) -> str:
     """The page as one HTML document."""
     parts = {
@@ -82,11 +100,42 @@ def page_html(content: Content) -> str:
 def _in_columns(content: Content) -> dict[str, Any]:
     """The content with designs by field, side by side: gzip finds what is alike only where it is near."""
     told: dict[str, Any] = msgspec.to_builtins(content)
+    designs = told["designs"]
+    for group in ("objectives", "constraints", "parameters"):
+        columns = told["points"][group]
+        told["points"][group] = {name: [_rounded(one, DIGITS) for one in columns[name]] for name in columns}
+    for design in designs.values():
+        for case in design["cases"]:
+            case["residual"] = _rounded(case["residual"], 2)
+    told["limit_kinds"], told["limits"] = _limits(designs)
     fields = DesignContent.__struct_fields__
-    designs = told["designs"].items()
-    columns = {field: {number: design[field] for number, design in designs} for field in fields}
-    told["designs"] = {field: side_by_side(column) for field, column in columns.items()}
+    by_field = {field: {number: design[field] for number, design in designs.items()} for field in fields}
+    told["designs"] = {field: side_by_side(parts, *STEPS.get(field, ())) for field, parts in by_field.items()}
     return told
+
+
+def _limits(designs: Mapping[int, Any]) -> tuple[list[dict[str, Any]], dict[int, list[list[float]]]]:
+    """Active limits, which are taken out of postures, for no two designs have the same ones.
+
+    Returns:
+        Limits that differ by more than their price, and of each design by posture, one after the other, which
+        of them are active and their prices, all with the three digits that the page shows.
+    """
+    kinds: dict[bytes, tuple[int, dict[str, Any]]] = {}
+    found: dict[int, list[list[float]]] = {}
+    for number, design in designs.items():
+        found[number] = []
+        for posture in design["postures"]:
+            found[number].append([])
+            for limit in posture.pop("limits", ()):
+                price, limit["value"] = (_rounded(limit.pop(key), 3) for key in ("price_n_m", "value"))
+                place, _ = kinds.setdefault(msgspec.json.encode(limit), (len(kinds), limit))
+                found[number][-1] += (place, price)
+    return [limit for _, limit in kinds.values()], found
+
+
+def _rounded(value: float | None, digits: int) -> float | None:
+    return None if value is None else float(f"{value:.{digits}g}")
 
 
 @cache

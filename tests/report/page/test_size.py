@@ -21,10 +21,10 @@ DESIGNS = 1000
 
 
 def jittered(part: Any, generator: random.Random) -> Any:
-    """Numbers moved a little, so that no two postures have a number in common that does not stand still."""
+    """Numbers moved by up to a third, so that columns are as full as those of a front."""
     match part:
         case float():
-            return part if abs(part) < 1e-12 else part * (1.0 + 1e-3 * generator.random())
+            return part if abs(part) < 1e-12 else part * (0.7 + 0.6 * generator.random())
         case dict():
             return {
                 key: value if key == "case" else jittered(value, generator) for key, value in part.items()
@@ -69,5 +69,7 @@ def test_a_page_of_a_thousand_designs_is_smaller_than_5_mb(
             log.detail(msgspec.structs.replace(detail, evaluation=number))
     content = page_content(read_run(tmp_path / "run"))
     assert len(content.points.number) == DESIGNS
-    assert sum(bool(design.postures) for design in content.designs.values()) > 800
+    assert all(design.postures for design in content.designs.values()), (
+        "every design of the front has its own"
+    )
     assert len(page_html(content).encode()) < 5_000_000

@@ -16,15 +16,34 @@ const filled = (form, values) => {
   return Object.fromEntries(Object.entries(form).map(([key, part]) => [key, filled(part, values)]));
 };
 
+// Designs, each of which is read from the columns when it is first asked for.
 const designsOf = (fields) => {
-  const designs = {};
-  const at = (column, row) => (Array.isArray(column) ? column[row] : column);
+  const makers = {};
+  const at = (column, row) =>
+    Array.isArray(column) ? column[row] : column?.times ? column.times[row] / column.per : column;
   for (const [field, groups] of Object.entries(fields))
     for (const { form, of, columns, places } of groups)
       of.forEach((number, row) => {
-        const own = places.map((place) => (place < 0 ? -at(columns[-1 - place], row) : at(columns[place], row)));
-        (designs[number] ??= {})[field] = filled(form, own.values());
+        (makers[number] ??= {})[field] = () => {
+          const own = places.map((place) => (place < 0 ? -at(columns[-1 - place], row) : at(columns[place], row)));
+          return filled(form, own.values());
+        };
       });
+  const read = (number, made) => {
+    const design = Object.fromEntries(Object.entries(made).map(([field, make]) => [field, make()]));
+    design.postures.forEach((posture, place) => {
+      posture.limits = [];
+      const pairs = content.limits[number][place];
+      for (let one = 0; one < pairs.length; one += 2)
+        posture.limits.push({ ...content.limit_kinds[pairs[one]], price_n_m: pairs[one + 1] });
+    });
+    return design;
+  };
+  const designs = {};
+  for (const [number, made] of Object.entries(makers)) {
+    let known;
+    Object.defineProperty(designs, number, { enumerable: true, get: () => (known ??= read(number, made)) });
+  }
   return designs;
 };
 content.designs = designsOf(content.designs);
