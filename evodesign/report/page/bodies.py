@@ -7,6 +7,7 @@ meshes are told once: what differs between links and designs is how they are pla
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 from evodesign.body.placement import Placement
@@ -53,7 +54,11 @@ def bodies(problem: DesignProblem) -> Bodies:
             for label, each in others.items()
         },
         payloads={
-            name: LoadBody(size_m=_three(load.size), mass_kg=float(load.mass))
+            name: LoadBody(
+                size_m=_three(load.size),
+                mass_kg=float(load.mass),
+                hand_moment_n_m=load.hand_moment if 0.0 < load.hand_moment < math.inf else None,
+            )
             for name, load in payloads.items()
         },
         changing=tuple(sorted(changing)),

@@ -59,7 +59,8 @@ def _columns(columns: list[Column], least: int, finest: float) -> dict[str, list
     written: list[Any] = []
     for column in columns:
         numbers = all(isinstance(value, float) for value in column)
-        per = _per_unit(max(map(abs, column)), least, finest) if numbers and least else 0.0
+        in_steps = numbers and least and len({*column}) > 1
+        per = _per_unit(max(map(abs, column)), least, finest) if in_steps else 0.0
         kept = tuple(round(value * per) for value in column) if per else column
         place = known.get(_with_types((per, *kept)))
         if place is None and numbers:

@@ -156,10 +156,14 @@ class TreeBody(Part, frozen=True):
 
 
 class LoadBody(Part, frozen=True):
-    """A load; its size is depth (robot to person), width, height."""
+    """A load; its size is depth (robot to person), width, height.
+
+    `hand_moment_n_m` bounds each component of the moment that a hand passes; None where nothing does.
+    """
 
     size_m: tuple[float, ...]
     mass_kg: float
+    hand_moment_n_m: float | None = None
 
 
 class AgentContent(Part, frozen=True):
@@ -235,6 +239,7 @@ class ActuatorContent(Part, frozen=True):
         joint: of the group, that is used most.
         asked_n_m, asked_by, share: of it, as in `evaluation.bill`.
         loss_w: of all together, each at its most.
+        winding_c, winding_limit_c: of the warmest in the problem's duty, where there is one [deg C].
     """
 
     name: str
@@ -249,6 +254,8 @@ class ActuatorContent(Part, frozen=True):
     asked_by: str
     share: float
     loss_w: float
+    winding_c: float | None = None
+    winding_limit_c: float | None = None
 
 
 class WallContent(Part, frozen=True):
@@ -279,6 +286,7 @@ class DesignContent(Part, frozen=True):
 
     Attributes:
         cases: how each ended.
+        people: mean and standard deviation over the problem's people, by quantity.
         postures: one per solved case; empty when the log or the page's limit leaves them out.
         clearances: as many as postures; none where a posture is of a stranger to the run's problem.
         efforts: of the person, likewise.
@@ -295,6 +303,7 @@ class DesignContent(Part, frozen=True):
     """
 
     cases: tuple[CaseOutcome, ...]
+    people: dict[str, tuple[float, float]] = {}
     postures: tuple[CaseDetail, ...] = ()
     clearances: tuple[ClearanceContent, ...] = ()
     efforts: tuple[EffortContent, ...] = ()
@@ -332,7 +341,7 @@ class StopContent(Part, frozen=True):
 class Content(Part, frozen=True):
     """The whole page; people and loads have an empty name where there is one of them.
 
-    `urdf` is the unscaled robot's, empty where it is not known.
+    `urdf` is the unscaled robot's, empty where it is not known. `words` say what joints and links are called.
 
     `importance` is as in `analysis.importance_json`, `families` as `analysis.families` tells
     them, `growth` a sentence or empty. `spread` is that over samples of people, as `analysis.people_spread`
@@ -355,6 +364,7 @@ class Content(Part, frozen=True):
     importance: dict[str, Any]
     families: dict[str, Any]
     bodies: Bodies | None
+    words: dict[str, str]
     urdf: str
     designs: dict[int, DesignContent]
     notes: tuple[str, ...]

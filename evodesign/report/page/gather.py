@@ -43,12 +43,14 @@ from evodesign.report.page.downloads import Downloads, rounded
 from evodesign.report.page.effort import effort_content
 from evodesign.report.page.hardware import hardware_content
 from evodesign.report.page.marks import MOST_POINTS, chosen_points, points
+from evodesign.report.page.over_people import over_people
 from evodesign.report.page.postures import MOMENTS, details_shown, shown_cases
 from evodesign.report.page.static_torques import StaticTorques
 from evodesign.report.subset import subsample
 from evodesign.runlog.run import RunLog
 from evodesign.runlog.sampled_file import read_sampled
 from evodesign.tree.urdf_write import urdf_text
+from evodesign.tree.words import words_of
 
 MOST_LEARNT = 2_000
 """Evaluations that tell what matters in the page; beyond this number they are thinned out evenly."""
@@ -103,6 +105,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
         importance=importance_json(found),
         families=families_json(kinds),
         bodies=None if problem is None else bodies(problem),
+        words={} if problem is None else _words(problem),
         urdf="" if problem is None else urdf_text(problem.scene.designed_tree),
         designs=_with_slices(
             _designs(run, problem, shown, opened, marked, on_front),
@@ -123,6 +126,12 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
         ),
         spread=None if spread is None else all_spreads_json(spread),
     )
+
+
+def _words(problem: DesignProblem) -> dict[str, str]:
+    """What joints and links of everybody are called."""
+    trees = {id(agent.tree): agent.tree for scene in problem.scenes for agent in scene.agents}
+    return {name: words for tree in trees.values() for name, words in words_of(tree).items()}
 
 
 def _problem(run: RunLog) -> tuple[DesignProblem | None, tuple[str, ...]]:
@@ -212,8 +221,12 @@ def _designs(
     wanted = {*on_front, *(mark.number for mark in marked)}
     known = None if problem is None else _Known.of(problem, run)
     recorded = {mark.number for mark in marked}
+    quantities = [each.name for each in (*run.header.objectives, *run.header.constrained)]
     return {
-        evaluation.number: _design(known, evaluation, opened.get(evaluation.number), recorded)
+        evaluation.number: replace(
+            _design(known, evaluation, opened.get(evaluation.number), recorded),
+            people=over_people(quantities, evaluation.assessment.cases),
+        )
         for evaluation in shown
         if evaluation.number in wanted
     }

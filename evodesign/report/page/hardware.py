@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from evodesign.evaluation.bill import bill_of_materials
+from evodesign.mechanics.agent import ROBOT
 from evodesign.problem.build import DesignProblem
 from evodesign.records import CaseDetail
 from evodesign.report.page.content import ActuatorContent, HardwareContent, WallContent
+from evodesign.tree.equip import actuators_of
 from evodesign.tree.model import Tree
 
 
@@ -29,17 +31,19 @@ def hardware_content(
     for joint, row in bill["joints"].items():
         groups.setdefault(row["actuator"], {})[joint] = row
     return HardwareContent(
-        actuators=tuple(_actuator(name, rows) for name, rows in groups.items()),
+        actuators=tuple(_actuator(name, rows, tree, cases) for name, rows in groups.items()),
         walls=tuple(WallContent(link=link, **row) for link, row in bill["links"].items()),
         mass_kg=bill["mass_kg"],
         least_clearance=bill.get("least_clearance"),
     )
 
 
-def _actuator(name: str, rows: Mapping[str, Mapping[str, Any]]) -> ActuatorContent:
+def _actuator(
+    name: str, rows: Mapping[str, Mapping[str, Any]], tree: Tree, cases: Sequence[CaseDetail]
+) -> ActuatorContent:
     """A group of joints with the same actuator, told by the joint that is used most."""
     joint = max(rows, key=lambda each: rows[each]["share"])
-    row = rows[joint]
+    row, duty = rows[joint], actuators_of(tree)[joint].duty
     return ActuatorContent(
         name=name,
         model=row["model"] or "",
@@ -53,4 +57,13 @@ def _actuator(name: str, rows: Mapping[str, Mapping[str, Any]]) -> ActuatorConte
         asked_by=row["asked_by"],
         share=row["share"],
         loss_w=sum(each["loss_w"] for each in rows.values()),
+        winding_c=duty and duty.temperature(_held(rows, cases) / row["rated_torque_n_m"]),
+        winding_limit_c=duty and duty.limit,
     )
+
+
+def _held(joints: Collection[str], cases: Sequence[CaseDetail]) -> float:
+    """The largest torque of some of the robot's joints in any case, disturbed or not [N m]."""
+    instants = [instant for case in cases for instant in case.instants]
+    held = [agents[ROBOT] for each in instants for agents in (each.agents, *each.disturbed.values())]
+    return max((abs(one.torques_n_m.get(joint, 0.0)) for one in held for joint in joints), default=0.0)

@@ -56,6 +56,7 @@ SCRIPTS = (
     "effort.js",
     "people.js",
     "reach.js",
+    "remarks.js",
     "downloads.js",
     "card.js",
     "beside.js",

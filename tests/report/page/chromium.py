@@ -114,7 +114,7 @@ class Tab:
 
     def key(self, name: str) -> None:
         for kind in ("rawKeyDown", "keyUp"):
-            code = {"ArrowLeft": 37, "ArrowRight": 39, "Tab": 9}[name]
+            code = {"ArrowLeft": 37, "ArrowRight": 39, "Tab": 9, "Escape": 27}[name]
             self.call("Input.dispatchKeyEvent", type=kind, key=name, code=name, windowsVirtualKeyCode=code)
 
     def screenshot(self, path: Path, *, whole: bool = False) -> None:

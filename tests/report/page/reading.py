@@ -20,6 +20,9 @@ from evodesign.tree.kinematics import Pose, euler_rotation, forward
 from evodesign.tree.model import Tree
 from tests.report.page.chromium import Tab
 
+SHOWN_WITHIN = 2e-3
+"""How far links [m] stand from where the log has them, as pages tell joints and bases in steps."""
+
 CANVAS = "document.getElementById('posture')"
 
 

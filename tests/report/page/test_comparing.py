@@ -26,6 +26,8 @@ pytestmark = pytest.mark.needs_chromium
 
 PLOT = "document.getElementById('front')"
 TITLE = "document.getElementById('card-title').textContent"
+SHEET = """(() => { const b = document.getElementById('card'), box = b.getBoundingClientRect();
+    return b.checkVisibility({ visibilityProperty: true }) && box.top < innerHeight - 100; })()"""
 SELECTED = "window.evodesign.state.selected"
 
 
@@ -54,6 +56,11 @@ def test_two_designs_stand_side_by_side(page: Tab, real_run: RunLog) -> None:
     assert page.value("document.getElementById('beside-title').textContent") == (
         f"Design {first} beside design {second}"
     )
+    seen = page.value(
+        "['front', 'beside-title', 'posture-beside', 'posture'].map(id => document.getElementById(id))"
+        ".map(e => (b => [b.top, b.bottom])(e.getBoundingClientRect()))"
+    )
+    assert max(top for top, _ in seen) - min(top for top, _ in seen) < 900, "front and postures in one window"
     worth = {each.number: each.assessment for each in real_run.evaluations}
     for name in [*worth[first].objectives, *worth[first].design]:
         cells = page.value(
@@ -68,15 +75,16 @@ def test_two_designs_stand_side_by_side(page: Tab, real_run: RunLog) -> None:
     knee = page.value(
         "[...document.querySelector('#beside-torques [data-beside=l_knee]').children].map(c => c.textContent)"
     )
-    assert knee[1:3] == [shown_as(most[first]), shown_as(most[second])]
+    assert [float(cell) for cell in knee[1:3]] == pytest.approx([most[first], most[second]], rel=1e-3)
     assert page.value("document.querySelector('[data-beside=\"whole robot\"]') !== null")
-    drawn = page.value("[...document.querySelectorAll('.beside-posture')].map(c => c.toDataURL())")
+    drawn = page.value("[...document.querySelectorAll('.stage canvas')].map(c => c.toDataURL())")
     assert len(set(drawn)) == 2
     page.value("window.evodesign.look(0.3, 0.4)")
-    turned = page.value("[...document.querySelectorAll('.beside-posture')].map(c => c.toDataURL())")
+    turned = page.value("[...document.querySelectorAll('.stage canvas')].map(c => c.toDataURL())")
     assert len({*drawn, *turned}) == 4
     page.value("document.getElementById('close-beside').click()")
-    assert page.value("document.getElementById('beside').hidden")
+    assert page.value("document.getElementById('beside') === null")
+    assert page.value("document.getElementById('posture-beside').offsetParent === null")
 
 
 @pytest.mark.slow
@@ -91,20 +99,21 @@ def test_parameters_can_be_axes_and_colours(page: Tab, real_run: RunLog) -> None
     )
     designs = {each.number: each.assessment.design for each in real_run.evaluations}
     assert len(drawn[0]) > 1
-    assert drawn[1] == [designs[number]["length.thigh"] for number in drawn[0]]
-    assert drawn[2] == [designs[number]["density.shank"] for number in drawn[0]]
+    for column, name in ((drawn[1], "length.thigh"), (drawn[2], "density.shank")):
+        assert column == pytest.approx([designs[number][name] for number in drawn[0]], rel=5e-7)
 
 
 @pytest.mark.slow
 def test_what_lies_outside_the_axes_is_counted_until_all_is_shown(page: Tab, real_run: RunLog) -> None:
     told = "document.getElementById('outside').textContent"
+    assert "of the front" not in page.value(told), "axes hold all of the front"
     page.value("document.getElementById('show-all').click()")
     assert page.value(told) == ""
     low = page.value(f"{PLOT}._fullLayout.yaxis.range[0]")
     name = page.value("document.getElementById('axis-up').selectedOptions[0].textContent").replace(" ", "_")
     values = [e.assessment.objectives[name] for e in front(real_run.header.objectives, real_run.evaluations)]
     middle = sorted(values)[len(values) // 2]
-    page.value(f"Plotly.relayout({PLOT}, {{'yaxis.range': [{low}, {middle}]}}).then(() => true)")
+    page.value(f"Plotly.relayout({PLOT}, {{'yaxis.range': [{low}, {middle * (1 + 1e-6)}]}}).then(() => true)")
     beyond = sum(value > middle for value in values)
     assert beyond > 0
     assert f"{beyond} of the front" in page.value(told)
@@ -173,17 +182,18 @@ def test_the_card_saves_csv_urdf_and_replay(page: Tab, problem: DesignProblem, r
     mine, theirs = (number_or_text.split(text) for text in (saved(page, "urdf").decode(), urdf_text(robot)))
     assert mine[::2] == theirs[::2]
     assert [float(each) for each in mine[1::2]] == pytest.approx(
-        [float(each) for each in theirs[1::2]], rel=5e-7, abs=0.0
+        [float(each) for each in theirs[1::2]], rel=2e-4, abs=1e-6
     )
     rows = list(csv.reader(io.StringIO(saved(page, "csv").decode())))
     values = {row[1]: float(row[2]) for row in rows[1:]}
-    assert values == {**design.evaluation.assessment.objectives, **design.evaluation.assessment.design}
+    logged = {**design.evaluation.assessment.objectives, **design.evaluation.assessment.design}
+    assert values == pytest.approx(logged, rel=5e-7)
     exported = list(csv.reader(io.StringIO(postures_csv(design.scene_set(), design.cases))))
     shown = list(csv.reader(io.StringIO(saved(page, "postures").decode())))
     assert len(shown) == len(exported)
     for mine, theirs in zip(shown, exported, strict=True):
         for one, other in zip(mine, theirs, strict=True):
-            assert one == other or float(one) == pytest.approx(float(other), rel=5e-7)
+            assert one == other or float(one) == pytest.approx(float(other), rel=1e-3, abs=0.02)
     reader = make_reader(io.BytesIO(saved(page, "replay")))
     summary = reader.get_summary()
     assert summary is not None
@@ -239,31 +249,72 @@ def test_a_clicked_design_is_seen_at_once_on_a_small_laptop(page: Tab) -> None:
 
 
 @pytest.mark.slow
-def test_a_tap_on_a_phone_goes_to_the_card(page: Tab) -> None:
+def test_a_tap_on_a_phone_opens_the_card_as_a_sheet_that_closes_again(page: Tab) -> None:
     page.resize(390, 844)
     page.wait_for("document.documentElement.scrollWidth <= 390")
     page.wait_for(f"{PLOT}._fullLayout.width < 390")
-    page.value("document.getElementById('show-all').click()")
     before = page.value(SELECTED)
+    assert not page.value(SHEET), "the card is out of sight until it is asked for"
     left, top, _, _ = page.place(PLOT)
     x, y = page.value(  # the place of another design of the front
         f"(() => {{ const t = {PLOT}.data.find(t => t.name === 'front'), l = {PLOT}._fullLayout;"
         f"const i = t.customdata.findIndex(number => number !== {before});"
         "return [l.xaxis.d2p(t.x[i]) + l._size.l, l.yaxis.d2p(t.y[i]) + l._size.t]; })()"
     )
-    assert page.value("document.getElementById('card').getBoundingClientRect().top > innerHeight")
-    page.value("addEventListener('scrollend', () => { window.stoodStillAt = scrollY; })")
-    page.value("window.stoodStillAt = -1")
+    scrolled = page.value("scrollY")
     page.call("Emulation.setTouchEmulationEnabled", enabled=True)
     page.call("Input.synthesizeTapGesture", x=left + x, y=top + y, gestureSourceType="touch")
     page.call("Emulation.setTouchEmulationEnabled", enabled=False)
     page.wait_for(f"{SELECTED} !== {before}")
-    page.wait_for("Math.abs(document.getElementById('card').getBoundingClientRect().top) < 2")
-    page.wait_for("stoodStillAt === scrollY")  # else a frame of its way is added to what is set next
+    page.wait_for(SHEET)
+    assert page.value("document.activeElement.id") == "card"
+    page.key("Escape")
+    page.wait_for(f"!{SHEET}")
+    bar = "document.getElementById('open-card')"
+    page.value(f"{bar}.click()")
+    page.wait_for(SHEET)
+    assert page.value(f"{bar}.ariaExpanded") == "true"
+    page.value(f"{bar}.click()")
+    page.wait_for(f"!{SHEET}")
+    assert page.value("scrollY") == scrolled, "the reader is where the card was opened"
     page.resize(1440, 900)
-    page.value("scrollTo(0, 0)")
-    page.value("document.querySelector('.chip').click()")
-    assert page.value("scrollY") == 0, "a wide page has its card beside the front"
+    page.wait_for(SHEET)
+    assert page.value(f"getComputedStyle({bar}).display") == "none", (
+        "a wide page has its card beside the front"
+    )
+
+
+READABLE = """(() => {
+  const seen = (one) => one.checkVisibility() && one.textContent.trim();
+  const labels = [...document.querySelectorAll('.xtick text, .ytick text, .reach text')].filter(seen)
+    .map((one) => [one.closest('g[class*=axislayer], svg'), one.getBoundingClientRect(), one.textContent]);
+  const meet = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1
+    && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1;
+  const over = labels.filter(([group, box], i) =>
+    labels.some(([other, next], j) => i < j && group === other && meet(box, next)));
+  const own = (one) => [...one.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim());
+  const size = (one) => {
+    const { a, b } = one.getCTM?.() ?? { a: 1, b: 0 };
+    return parseFloat(getComputedStyle(one).fontSize) * Math.hypot(a, b);
+  };
+  const small = [...document.querySelectorAll('body *')]
+    .filter((one) => seen(one) && own(one) && !one.closest('script, noscript, .unseen') && size(one) < 11);
+  return [labels.length, over.map(([, , text]) => text), small.map((one) => one.outerHTML.slice(0, 90))];
+})()"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("width", [390, 1024, 1440])
+def test_every_label_has_11_pixels_and_none_lies_over_another(page: Tab, width: int) -> None:
+    page.resize(width, 844)
+    page.wait_for(f"{PLOT}._fullLayout.width < {width}")
+    page.value("document.getElementById('open-card').click()")
+    page.value("document.querySelector('#families-section summary').click()")
+    page.value("new Promise(resolve => setTimeout(() => resolve(true), 400))")  # plots follow the width
+    labels, over, small = page.value(READABLE)
+    assert labels > 20
+    assert over == []
+    assert small == []
 
 
 @pytest.mark.slow
@@ -284,3 +335,32 @@ def test_on_a_phone_nothing_is_wider_than_the_page_and_axes_have_room(page: Tab,
         "const t = [...document.querySelectorAll('.track')].at(-1).getBoundingClientRect();"
         "return Math.abs(l.bottom - t.bottom) < 2 && Math.abs(l.left - t.left) < 2; })()"
     )
+
+
+INKS = """(name) => {
+  [...document.querySelectorAll('.views button')].find((one) => one.textContent === name).click();
+  const canvas = document.getElementById('posture'), copy = document.createElement('canvas');
+  [copy.width, copy.height] = [canvas.width, canvas.height];
+  const pen = copy.getContext('2d');
+  pen.drawImage(canvas, 0, 0);
+  const { data } = pen.getImageData(0, 0, copy.width, copy.height);
+  let [robot, person] = [0, 0];
+  for (let at = 0; at < data.length; at += 4) {
+    const [red, green, blue, opaque] = data.slice(at, at + 4);
+    if (opaque < 250) continue;
+    if (blue > red + 60 && blue > green) robot += 1;
+    if (red > blue + 60) person += 1;
+  }
+  return [robot, person];
+}"""
+
+
+@pytest.mark.slow
+def test_from_the_front_whoever_stands_before_the_camera_is_seen_through(page: Tab) -> None:
+    names = page.value("[...document.querySelectorAll('.views button')].map(one => one.textContent)")
+    assert names == ["Oblique", "Side", "Robot's front", "Person's front"]
+    inks = {name: page.value(f"({INKS})({json.dumps(name)})") for name in names}
+    for name in ("Oblique", "Side"):
+        assert min(inks[name]) > 500, "both are seen"
+    assert inks["Robot's front"][1] == 0 < inks["Robot's front"][0] > 500
+    assert inks["Person's front"][0] == 0 < inks["Person's front"][1] > 500

@@ -21,6 +21,12 @@ pytestmark = pytest.mark.needs_chromium
 MAP = "document.getElementById('families')"
 
 
+def open_families(tab: Tab) -> None:
+    """Unfold the section as a reader does."""
+    tab.value("document.querySelector('#families-section summary').click()")
+    tab.wait_for(f"{MAP}.data !== undefined")
+
+
 @pytest.mark.slow
 def test_a_design_outside_the_map_is_said_to_be(tmp_path: Path, chromium: Tab) -> None:
     header = toy_header(budget=60)
@@ -35,6 +41,7 @@ def test_a_design_outside_the_map_is_said_to_be(tmp_path: Path, chromium: Tab) -
     path = tmp_path / "report.html"
     path.write_text(page_html(page_content(read_run(tmp_path / "run"))), encoding="utf-8")
     open_page(chromium, path)
+    open_families(chromium)
     for evaluation in evaluations:
         chromium.value(f"window.evodesign.select({evaluation.number})")
         said = chromium.value("document.getElementById('families-beyond').textContent")
@@ -53,6 +60,8 @@ def test_the_map_shows_the_elites_and_relatives_open_by_a_click(tmp_path: Path, 
     path.write_text(page_html(page_content(run)), encoding="utf-8")
     chromium.events.clear()
     open_page(chromium, path)
+    assert chromium.value(f"{MAP}.data === undefined"), "families are drawn when they are asked for"
+    open_families(chromium)
     elites = {kind.elite.number for kind in families(run.header, run.evaluations).kinds}
     drawn = chromium.value(f"{MAP}.data[0].customdata.flat().filter(n => n !== null)")
     assert sorted(drawn) == sorted(elites)

@@ -17,6 +17,7 @@ from evodesign.report.page import page_content, page_html
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
+from evodesign.tree.words import in_words
 from tests.report.page.chromium import Tab
 from tests.report.page.reading import open_page, shown_as
 
@@ -83,11 +84,11 @@ def test_the_card_shows_what_the_bill_says(
         most = max(rows, key=lambda joint: rows[joint]["share"])
         text = chromium.value(f"document.querySelector('[data-actuator={parameter.group}]').textContent")
         assert text.startswith(f"{len(rows)} \u00d7 {parameter.group}")
-        assert f"{most} needs {rows[most]['asked_n_m']:.3g} N m ({rows[most]['asked_by']})" in text
+        assert f"{in_words(most)} needs {rows[most]['asked_n_m']:.3g} N m ({rows[most]['asked_by']})" in text
         assert f"{rows[most]['rated_torque_n_m']:.3g}" in text
     forearm = bill["links"]["l_forearm"]
     text = chromium.value("document.querySelector('[data-wall=l_forearm]').textContent")
-    assert text.startswith("l_forearmaluminium 60612")
+    assert text.startswith("left forearmaluminium 60612")
     assert f"{float(format(forearm['safety_factor'], '.3g')):g}" in text
     assert text.endswith(forearm["safety_case"])
     assert chromium.complaints() == []

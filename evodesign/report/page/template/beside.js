@@ -1,52 +1,42 @@
-// Two designs side by side: the one that was put there and the chosen one, with the same case and camera.
+// Two designs in one card: the one that was put there and the chosen one, with the same case and camera.
+
+const comparing = () => rowOf.has(state.beside) && state.beside !== state.selected;
 
 const besideButton = (number) =>
   element("button", {
     ...{ type: "button", class: "quiet", id: "put-beside", text: "Compare" },
     title: "Put this design beside the one that you choose next",
-    onclick: () => {
-      putBeside(number);
-      byId("beside").scrollIntoView({ block: "nearest" });
-    },
+    onclick: () => putBeside(number),
   });
 
 const putBeside = (number) => {
   state.beside = number;
-  drawBeside();
+  drawCard();
   tell("view");
 };
 
-const besideViewers = [];
-
-const besideStage = (place) => {
-  const canvas = element("canvas", { class: "beside-posture", tabindex: 0, role: "application" });
-  const title = element("h3", {});
-  const missing = element("p", { class: "plain" });
-  const box = element("figure", {}, title, canvas, missing);
-  if (hasWebgl) {
-    besideViewers[place] ??= { canvas, viewer: new Viewer(canvas) };
-    steer(canvas);
-  } else canvas.hidden = true;
-  return { box, canvas, title, missing };
-};
-
-let besideStages = null;
-
-const drawBesidePostures = () => {
-  if (byId("beside").hidden) return;
-  const at = shownCase();
-  [state.beside, state.selected].forEach((number, place) => {
-    const { canvas, title, missing } = besideStages[place];
-    const design = content.designs[number] ?? NOTHING_KNOWN;
-    const posture = content.bodies && postureAt(design, at);
-    title.textContent = `Design ${number}, ${caseText(at)}`;
-    canvas.setAttribute("aria-label", `Posture of design ${number}, ${caseText(at)}`);
-    missing.textContent = posture ? "" : "No posture of this case is in this page.";
-    canvas.hidden = !posture || !hasWebgl;
-    if (posture && hasWebgl) besideViewers[place].viewer.show(sceneItems(design, posture.agents, at, loadHeight(posture, at)));
-  });
-  byId("beside-torques").replaceChildren(...besideTorques());
-};
+// What is compared, on top of the card; nothing where nothing is.
+const besideHead = () =>
+  rowOf.has(state.beside)
+    ? element(
+        "div",
+        { id: "beside" },
+        element(
+          "div",
+          { class: "heading" },
+          element("h3", {
+            id: "beside-title",
+            text: comparing()
+              ? `Design ${state.beside} beside design ${state.selected}`
+              : `Design ${state.beside}: choose another one to see it beside this one`,
+          }),
+          element("button", {
+            ...{ type: "button", class: "quiet", id: "close-beside", text: "End comparison" },
+            onclick: () => putBeside(null),
+          }),
+        ),
+      )
+    : null;
 
 // Rows of [name, first value, second value, unit] as a table with differences; texts have none.
 const besideTable = (caption, lines) => {
@@ -67,7 +57,7 @@ const besideTable = (caption, lines) => {
         element(
           "tr",
           { "data-beside": name },
-          element("th", { scope: "row" }, `${name} `, element("small", { text: unit })),
+          element("th", { scope: "row" }, `${called(name)} `, element("small", { text: unit })),
           ...[shown(a), shown(b), difference(a, b)].map((text) => element("td", { class: "number", text })),
         ),
       ),
@@ -120,39 +110,25 @@ const besideTorques = () =>
     return [besideTable(`${agentName(agent)}: most |torque|`, lines)];
   });
 
-const drawBeside = () => {
+// The section of the card with all that differs; nothing where one design is shown.
+const besideSection = () => {
+  if (!comparing()) return null;
   const both = [state.beside, state.selected].map((number) => rowOf.get(number));
-  const place = byId("beside");
-  place.hidden = state.beside === null || both.includes(undefined);
-  if (place.hidden) return;
-  const alike = state.beside === state.selected;
-  byId("beside-title").textContent = alike
-    ? `Design ${state.beside} beside another`
-    : `Design ${state.beside} beside design ${state.selected}`;
-  byId("beside-hint").textContent = alike
-    ? "Choose another design: it stands beside this one."
-    : "Both in the case that the card shows, from the same direction; differences are second less first.";
-  byId("beside-body").hidden = alike;
-  if (alike) return;
-  besideStages ??= [0, 1].map(besideStage);
   const tables = (wanted, caption) =>
     besideTable(
       caption,
       wanted.map((axis) => [axis.name, axis.column[both[0]], axis.column[both[1]], unitText(axis.unit)]),
     );
   const designs = [state.beside, state.selected].map((number) => content.designs[number] ?? NOTHING_KNOWN);
-  byId("beside-body").replaceChildren(
-    element("div", { class: "beside-postures" }, ...besideStages.map(({ box }) => box)),
+  return fold(
+    "Comparison",
+    "differences are second less first",
     tables(resultAxes, "Results"),
     tables(axes.slice(resultAxes.length), "Parameters"),
     ...besideHardware(...designs),
-    element("div", { id: "beside-torques" }),
+    element("div", { id: "beside-torques" }, ...besideTorques()),
   );
-  drawBesidePostures();
 };
 
-const startBeside = () => {
-  byId("close-beside").addEventListener("click", () => putBeside(null));
-  on("selected", drawBeside);
-  for (const event of ["height", "pair", "theme"]) on(event, drawBesidePostures);
-};
+const startBeside = () =>
+  on("pair", () => byId("beside-torques")?.replaceChildren(...besideTorques()));

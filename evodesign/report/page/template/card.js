@@ -1,10 +1,15 @@
 // The card of the chosen design: its objectives, its postures, its parameters.
 
 const against = (axis, row) => {
-  const reference = unscaledMark ? axis.column[rowOf.get(unscaledMark.number)] : null;
-  if (reference === null || reference === undefined || axis.column[row] === null) return "";
-  if (points.number[row] === unscaledMark.number) return "";
-  return `unscaled ${exact(reference)}`;
+  const number = comparing() ? state.beside : unscaledMark?.number;
+  const reference = axis.column[rowOf.get(number)] ?? null;
+  if (reference === null || axis.column[row] === null || number === points.number[row]) return "";
+  return `${comparing() ? `design ${number}:` : "unscaled"} ${exact(reference)}`;
+};
+
+const peopleText = (number, name) => {
+  const spread = overPeopleOf(number, name);
+  return spread ? `people ${figure(spread.mean, 3)} ± ${figure(spread.deviation, 2)}` : "";
 };
 
 const worth = (row) =>
@@ -23,6 +28,10 @@ const worth = (row) =>
           exact(value),
           element("small", { text: value === null ? " no value" : ` ${unitText(axis.unit)}` }),
           element("span", { class: "against", text: against(axis, row) }),
+          element("span", {
+            ...{ class: "against", "data-spread": axis.name, text: peopleText(points.number[row], axis.name) },
+            title: "Mean and standard deviation over the people of the problem, or over those that were sampled",
+          }),
           constraint
             ? element("span", {
                 class: isBeyond(constraint, value) ? "against beyond" : "against",
@@ -81,7 +90,7 @@ const whyNoPosture = (row) => {
   return `The log keeps postures of designs that nothing before them had beaten; this one was beaten when it arrived. evodesign report RUN --designs ${points.number[row]} solves it anew.`;
 };
 
-const NOTHING_KNOWN = { cases: [], postures: [], clearances: [], efforts: [], gradients: {}, links: {}, joints: {}, hardware: null };
+const NOTHING_KNOWN = { cases: [], postures: [], clearances: [], efforts: [], people: {}, gradients: {}, links: {}, joints: {}, hardware: null };
 
 // What the card shows now: how to draw it again, and how to show another height or case.
 const shown = { redraw: () => {}, height: () => {} };
@@ -104,7 +113,7 @@ const drawWithoutPostures = (row) => {
   shownScene = null;
   const why = element("div", {}, element("p", { class: "plain", text: whyNoPosture(row) }));
   const files = downloads(row, content.designs[state.selected] ?? NOTHING_KNOWN);
-  fillCard([cardHead(row), why, peopleSection(state.selected), fold("Parameters", `${parameters.length}`, parameterTable(row)), files]);
+  fillCard([besideHead(), cardHead(row), why, besideSection(), peopleSection(state.selected), fold("Parameters", `${parameters.length}`, parameterTable(row)), files]);
   Object.assign(shown, { redraw: () => {}, height: () => {} });
 };
 
@@ -116,11 +125,15 @@ const drawWithPostures = (row, design) => {
   const limits = limitSection(design);
   const effort = effortSection(design);
   const wrenches = element("div");
+  const remarks = remarkList(row, design);
   const mass = massOf(treeOf("robot", design));
   fillCard([
+    besideHead(),
     cardHead(row),
     hasWebgl ? theStage() : withoutStage(),
     height.box,
+    remarks.box,
+    besideSection(),
     downloads(row, design),
     cases?.section,
     peopleSection(state.selected),
@@ -142,6 +155,7 @@ const drawWithPostures = (row, design) => {
   let task = taskTexts[state.height];
   const showHeight = (moving) => {
     height.show();
+    remarks.draw();
     if (task !== taskTexts[state.height]) motion?.draw();
     task = taskTexts[state.height];
     cases?.draw();
@@ -157,16 +171,48 @@ const drawWithPostures = (row, design) => {
   showHeight(false);
 };
 
-// Choose a design where a reader points at it: on a screen so narrow that its card stands below, go there.
+// On a screen too narrow for two columns the card is a sheet over the page, opened by choosing a design.
 const stacked = window.matchMedia("(max-width: 900px)");
+let openedFrom = null;
+
+const isOpen = () => byId("card").classList.contains("drawn-up");
+
+const showSheet = (open) => {
+  byId("card").classList.toggle("drawn-up", open);
+  byId("open-card").setAttribute("aria-expanded", String(open));
+  byId("open-card").textContent = `${open ? "Close" : "Show"} design ${state.selected}`;
+};
+
+const openSheet = () => {
+  if (!stacked.matches || isOpen()) return;
+  openedFrom = document.activeElement;
+  showSheet(true);
+  byId("card").focus({ preventScroll: true });
+};
+
+const closeSheet = () => {
+  if (!isOpen()) return;
+  showSheet(false);
+  (openedFrom?.isConnected && openedFrom !== document.body ? openedFrom : byId("open-card")).focus({ preventScroll: true });
+};
+
+const startSheet = () => {
+  byId("open-card").hidden = false;
+  byId("open-card").addEventListener("click", () => (isOpen() ? closeSheet() : openSheet()));
+  document.querySelector(".skip").addEventListener("click", openSheet);
+  document.addEventListener("keydown", (event) => event.key === "Escape" && closeSheet());
+  stacked.addEventListener("change", () => showSheet(false));
+};
+
 const pick = (number) => {
   select(number);
-  if (stacked.matches) byId("card").scrollIntoView({ behavior: stillness.matches ? "instant" : "smooth" });
+  openSheet();
 };
 
 const drawCard = () => {
   const row = rowOf.get(state.selected);
   if (row === undefined) return;
+  showSheet(isOpen());
   const design = content.designs[state.selected] ?? NOTHING_KNOWN;
   if (content.bodies !== null && design.postures.length > 0) drawWithPostures(row, design);
   else drawWithoutPostures(row);
@@ -182,6 +228,7 @@ const startCard = () => {
   state.height = stops.length > 1 ? 1 : 0;
   state.person = Math.floor(content.people.length / 2);
   state.payload = Math.floor(content.payloads.length / 2);
+  startSheet();
   on("selected", drawCard);
   on("height", () => shown.height(true));
   on("pair", () => {

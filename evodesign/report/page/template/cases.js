@@ -25,7 +25,7 @@ const loadHeight = (posture, at) => posture?.load_height_m ?? at.height;
 
 // The two bodies that are nearest in a posture; nothing if the page does not know.
 const clearanceAt = (design, at) => design.clearances[design.postures.findIndex((one) => isOf(one, at))];
-const clearanceText = ({ first, second, distance_m: distance }) =>
+const clearanceText = ({ first: one, second: other, distance_m: distance }, [first, second] = [one, other].map(inWords)) =>
   distance < -1e-4
     ? `${capital(first)} and ${second} overlap by ${figure(-1e3 * distance, 2)} mm`
     : `Nearest bodies: ${first} and ${second}, ${figure(1e3 * Math.max(distance, 0), 2)} mm apart`;

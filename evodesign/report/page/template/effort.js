@@ -5,7 +5,7 @@ const effortAt = (design, at) => design.efforts[design.postures.findIndex((one) 
 const kilonewtons = (newtons) => `${figure(newtons / 1000, 2)} kN`;
 
 const holdingText = ({ seconds, longer, tires }) =>
-  `${longer ? "more than " : ""}${seconds < 120 ? `${seconds} s` : `${Math.round(seconds / 60)} min`}, until ${tires} tires`;
+  `${longer ? "more than " : ""}${seconds < 120 ? `${seconds} s` : `${Math.round(seconds / 60)} min`}, until ${called(tires)} tires`;
 
 const effortRows = (effort) => [
   effort.back_n !== null && [

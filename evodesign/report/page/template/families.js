@@ -156,16 +156,19 @@ const startFamilies = () => {
   byId("families-hint").textContent =
     `The design of best ${words(objective)} of every kind: ${filled} of ${cells} cells are filled. A click shows its robot. ` +
     `Other kinds: evodesign families RUN --by NAME --by NAME.`;
-  drawFamilies();
-  drawRelatives();
-  byId("families").on("plotly_click", ({ points: [point] }) => {
-    if (point.customdata === null || point.customdata === undefined) return;
-    document.activeElement.blur(); // so that arrow keys walk on
-    pick(point.customdata);
-  });
-  on("theme", drawFamilies);
-  on("selected", () => {
+  let begun = false;
+  const draw = () => {
+    if (!byId("families-section").open) return;
     drawFamilies();
     drawRelatives();
-  });
+    if (begun) return;
+    begun = true;
+    byId("families").on("plotly_click", ({ points: [point] }) => {
+      if (point.customdata === null || point.customdata === undefined) return;
+      document.activeElement.blur(); // so that arrow keys walk on
+      pick(point.customdata);
+    });
+  };
+  byId("families-section").addEventListener("toggle", draw);
+  for (const event of ["theme", "selected"]) on(event, draw);
 };

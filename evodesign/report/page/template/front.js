@@ -53,26 +53,15 @@ const frontTrace = (wanted, name, marker, more = {}) => {
   };
 };
 
-// From the front's best value to its worst but 5 %, with the marked designs: outliers must not compress it.
-// What lies beyond is counted below the figure.
+// All of the front with the marked designs, and what lies behind it once that is asked for. What lies outside is
+// counted below the figure.
 const zoomed = (axis) => {
-  if (drawnIn.everything || axis.isParameter) return whole(axis);
-  const values = frontRows.map((row) => axis.column[row]);
-  const marked = content.marks
-    .map((mark) => axis.column[rowOf.get(mark.number)])
-    .filter((value) => value !== null);
-  const [from, to] = axis.sense === "minimise" ? [0, 0.95] : axis.sense === "maximise" ? [0.05, 1] : [0, 1];
-  const low = Math.min(quantile(values, from), ...marked);
-  const high = Math.max(quantile(values, to), ...marked);
-  const margin = 0.06 * (high - low) || Math.abs(high) * 0.05 || 1;
-  return [low - margin, high + margin];
-};
-
-const whole = (axis) => {
-  const values = [...frontRows, ...dominatedRows].map((row) => axis.column[row]).filter((value) => value !== null);
+  const behind = drawnIn.everything || axis.isParameter ? dominatedRows : [];
+  const marked = content.marks.map((mark) => rowOf.get(mark.number));
+  const values = [...frontRows, ...marked, ...behind].map((row) => axis.column[row]).filter((value) => value !== null);
   const low = values.reduce((a, b) => Math.min(a, b), Infinity);
   const high = values.reduce((a, b) => Math.max(a, b), -Infinity);
-  const margin = 0.04 * (high - low) || Math.abs(high) * 0.05 || 1;
+  const margin = 0.05 * (high - low) || Math.abs(high) * 0.05 || 1;
   return [low - margin, high + margin];
 };
 
@@ -83,7 +72,7 @@ const colourScale = (axis) => {
     reversescale: axis.sense === "minimise",
     cmin: low,
     cmax: high,
-    showscale: true,
+    showscale: !narrow.matches,
     colorbar: {
       title: { text: plain(label(axis)), side: "right" },
       thickness: 10,
@@ -140,7 +129,27 @@ const frontTraces = () => {
   const ring = solid
     ? { size: 11, symbol: "circle-open", color: colour("ink"), line: { width: 3, color: colour("ink") } }
     : { size: 19, symbol: "circle-open", color: colour("ink"), line: { width: 2.2, color: colour("ink") } };
-  return [...traces, frontTrace(chosen, "chosen", ring, { hoverinfo: "skip" })];
+  const bars = solid ? [] : peopleBars(chosen);
+  return [...traces, ...bars, frontTrace(chosen, "chosen", ring, { hoverinfo: "skip" })];
+};
+
+// Mean and standard deviation over people, of the chosen design: a cross over the quantities that spread.
+const peopleBars = (chosen) => {
+  const drawn = [drawnIn.across, drawnIn.up].map((index) => frontAxes[index]);
+  const spreads = chosen.map((row) => drawn.map(({ name }) => overPeopleOf(points.number[row], name)));
+  if (!spreads.flat().some(Boolean)) return [];
+  const middle = (place) => chosen.map((row, one) => spreads[one][place]?.mean ?? drawn[place].column[row]);
+  const bar = (place) => ({
+    ...{ type: "data", array: spreads.map((one) => one[place]?.deviation ?? 0), visible: true },
+    ...{ color: colour("second"), thickness: 1, width: 5 },
+  });
+  return [
+    {
+      ...{ type: manyPoints ? "scattergl" : "scatter", mode: "markers", name: "people", hoverinfo: "skip" },
+      ...{ x: middle(0), y: middle(1), error_x: bar(0), error_y: bar(1), customdata: [] },
+      marker: { size: 1, color: colour("second") },
+    },
+  ];
 };
 
 // NIOSH's limit of the back's compression [N] (human.back), drawn where that is an axis.
@@ -179,7 +188,7 @@ const frontLayout = () => {
     });
   }
   return plotLayout({
-    margin: { l: 62, r: 12, t: 30, b: 50 },
+    margin: { l: narrow.matches ? 48 : 62, r: 12, t: 30, b: 50 },
     uirevision: `2d ${across} ${up} ${everything}`,
     selections: state.lasso ? (byId("front").layout?.selections ?? []) : [],
     dragmode: "zoom",
@@ -252,7 +261,7 @@ const startFront = () => {
   const small = dominatedRows.length < behind ? `${dominatedRows.length} of the ${behind}` : `the ${behind}`;
   hint.textContent =
     objectives.length > 1
-      ? `${count} that no other one beats in every objective${drawn}; small points are ${small} feasible designs behind. Click a point, or walk with the left and right arrow keys, to see its robot.`
+      ? `${count} that no other one beats in every objective${drawn}; small points are ${small} feasible designs behind. Click a point, or walk with the left and right arrow keys, to see its robot.${content.people.length > 1 ? " The cross of the chosen design spans mean ± standard deviation over people, where torques are the axes." : ""}`
       : "One objective: each point is a feasible design. Click a point to see its robot.";
   plot.setAttribute("aria-label", `${hint.textContent} The same designs are in the table below.`);
   frontChoices();
@@ -265,6 +274,7 @@ const startFront = () => {
     walk(step);
   });
   for (const event of ["selected", "filter", "theme"]) on(event, drawFront);
+  narrow.addEventListener("change", drawFront);
 };
 
 // Buttons for the marked designs.

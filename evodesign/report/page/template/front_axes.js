@@ -80,6 +80,11 @@ const sayOutside = () => {
   const third = drawnIn.solid ? undefined : frontAxes[drawnIn.colour];
   const [low, high] = third ? zoomed(third) : [];
   const coloured = third ? frontRows.filter((row) => third.column[row] < low || third.column[row] > high) : [];
+  byId("scale").hidden = !third || !narrow.matches;
+  if (third) {
+    const [from, to] = third.sense === "minimise" ? [high, low] : [low, high];
+    byId("scale").replaceChildren(`${capital(words(third.name))}: ${figure(from, 3)} `, element("i"), ` ${withUnit(Number(to.toPrecision(3)), third.unit)}`);
+  }
   const sentences = [
     parts.length ? `Outside the axes: ${parts.join(" and ")}.` : "",
     coloured.length ? `Beyond the scale of colours: ${coloured.length}.` : "",

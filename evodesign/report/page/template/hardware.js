@@ -13,7 +13,7 @@ const headRow = (heads) =>
 
 // What is asked of a group, below it: the share that is used as a bar, and by what.
 const askedRow = (one, columns) => {
-  const used = `${figure(100 * one.share, 3)} % used: ${one.joint} needs ${figure(one.asked_n_m, 3)} N m (${one.asked_by})`;
+  const used = `${figure(100 * one.share, 3)} % used: ${called(one.joint)} needs ${figure(one.asked_n_m, 3)} N m (${one.asked_by})`;
   return element(
     "tr",
     { class: "asked" },
@@ -34,7 +34,7 @@ const smallest = (value) => (value === null ? "" : 0 < value && value < 0.01 ? "
 // Which parts have least room, where actuators are bodies.
 const clearanceWords = (room) => {
   if (!room) return "";
-  const [one, other] = room.parts;
+  const [one, other] = room.parts.map(inWords);
   const fit = room.clearance_m < 0 ? " too little" : "";
   return ` ${one} and ${other} have least room: ${figure(1000 * Math.abs(room.clearance_m), 2)} mm${fit}.`;
 };
@@ -79,8 +79,8 @@ const wallTable = (hardware) => {
       { "data-wall": one.link },
       element(
         "th",
-        { scope: "row" },
-        one.link,
+        { scope: "row", title: one.link },
+        called(one.link),
         element("small", { text: (one.material ?? "").replaceAll("_", " ") }),
       ),
       element("td", { class: "number", text: figure(1000 * one.wall_m, 3) }),

@@ -8,6 +8,8 @@ const duration = (seconds) => {
   return `${figure(seconds / 3600, 3)} h`;
 };
 
+const NOTES_SHOWN = 2;
+
 const bestFigure = (objective, axis) => {
   const mark = content.marks.find((one) => one.kind === "best" && one.label.endsWith(words(objective.name)));
   if (!mark) return null;
@@ -59,7 +61,14 @@ const startHead = () => {
   );
   const notes = byId("notes");
   notes.hidden = content.notes.length === 0;
-  notes.append(...content.notes.map((note) => element("li", { text: capital(note) })));
+  const items = content.notes.map((note) => element("li", { text: capital(inWords(note)) }));
+  notes.append(...items.slice(0, NOTES_SHOWN));
+  if (items.length > NOTES_SHOWN)
+    byId("more-notes").append(
+      element("summary", { text: `${countable(items.length - NOTES_SHOWN, "more note")}` }),
+      element("ul", { class: "notes" }, ...items.slice(NOTES_SHOWN)),
+    );
+  byId("more-notes").hidden = items.length <= NOTES_SHOWN;
   const listed = [
     ["Directory", facts.directory],
     ["Started", facts.started || "–"],

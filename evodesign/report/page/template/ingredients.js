@@ -66,7 +66,7 @@ const massTable = (design) => {
     element(
       "tr",
       {},
-      element("th", { scope: "row", text: name }),
+      element("th", { scope: "row", title: name, text: called(name) }),
       element("td", {}, bar),
       element("td", { class: "number", text: exact(now) }),
       element("td", { class: "number", text: exact(then) }),

@@ -8,7 +8,7 @@ const limitsAt = (design, at) => design.postures.find((one) => isOf(one, at))?.l
 const limitText = (limit) => {
   const [size, unit] = stepOf(limit);
   const value = figure(limit.unit === "1" ? limit.value : limit.value / size, 3);
-  const whose = limit.part ? `${limit.name} of ${limit.part}` : limit.name;
+  const whose = limit.part ? `${limit.name} of ${inWords(limit.part)}` : limit.name;
   const shown = limit.unit === "1" ? value : `${value} ${unit === "degree" ? "degrees" : unit}`;
   return `${whose}, at ${limit.at_most ? "most" : "least"} ${shown}`;
 };

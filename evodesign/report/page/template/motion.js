@@ -16,7 +16,7 @@ const momentsOf = (design, at) => {
   return { times: own.map((stop) => stops[stop].time_s), postures, resting };
 };
 
-const withLimit = (joint, limit) => (limit === undefined ? joint : `${joint}, ±${figure(limit, 3)}`);
+const withLimit = (joint, limit) => called(joint) + (limit === undefined ? "" : `, ±${figure(limit, 3)}`);
 
 // The joints with the largest torques on the way: their torques [N m] at every moment, and at rest.
 const torqueLines = ({ postures, resting }, agent, design) => {

@@ -28,7 +28,6 @@ const extent = (axis) => {
 let extents = axes.map(extent);
 
 // Where the middle of an axis stands; on a narrow page its name and range are above it.
-const narrow = window.matchMedia("(max-width: 640px)");
 const rowHeight = () => (narrow.matches ? NARROW_ROW : ROW);
 const topOf = (index) =>
   index * rowHeight() +

@@ -19,6 +19,14 @@ const differenceText = (quantity, samples) => {
   return size <= 1e-6 * Math.abs(quantity.mean) ? "0" : momentsText(difference, samples);
 };
 
+// Mean and deviation of a quantity: over sampled people, else over the problem's own; nothing where there is one.
+const overPeopleOf = (number, name) => {
+  const sampled = spreadOf.get(number)?.quantities[name];
+  if (sampled && sampled.deviation !== null) return sampled;
+  const [mean, deviation] = content.designs[number]?.people[name] ?? [];
+  return mean === undefined ? null : { mean, deviation };
+};
+
 const peopleRow = (own) =>
   element(
     "tr",

@@ -14,8 +14,7 @@ const reachFigure = (row) => {
       ...content.heights_m,
       1,
     ) * 1.02;
-  const width = 444;
-  const x = (height) => (width * height) / most;
+  const x = (height) => `${(100 * height) / most}%`;
   const within = (height) => height >= low && height <= high;
   const ticks = content.heights_m
     .map(
@@ -23,9 +22,9 @@ const reachFigure = (row) => {
         `<g${within(height) ? "" : ' class="out"'}><line x1="${x(height)}" x2="${x(height)}" y1="16" y2="30" stroke="var(--${within(height) ? "ink" : "second"})" stroke-width="1.5"/><text x="${x(height)}" y="44" text-anchor="middle"${within(height) ? "" : ' class="out"'}>${height.toFixed(decimals)}</text></g>`,
     )
     .join("");
-  box.innerHTML = `<svg viewBox="0 0 ${width} 46" role="img" aria-label="Holds loads from ${from} to ${figure(high)} m">
-    <line x1="0" x2="${width}" y1="23" y2="23" stroke="var(--line)" stroke-width="8" stroke-linecap="round"/>
+  box.innerHTML = `<svg role="img" aria-label="Holds loads from ${from} to ${figure(high)} m">
+    <line x1="0" x2="100%" y1="23" y2="23" stroke="var(--line)" stroke-width="8" stroke-linecap="round"/>
     <line x1="${x(low)}" x2="${x(high)}" y1="23" y2="23" stroke="var(--accent)" stroke-width="8"/>${ticks}
-    <text x="0" y="10">Holds loads from ${from} to ${figure(high)} m; required heights [m] below</text></svg>`;
+    <text x="0" y="10">Holds loads from ${from} to ${figure(high)} m; required [m]:</text></svg>`;
   return box;
 };

@@ -5,8 +5,9 @@ const NEWTONS_PER_METRE = 1000;
 // What is drawn of a case's posture; the load stands at a height [m].
 const sceneItems = (design, agents, at, height = at.height) => {
   const items = [];
+  let stands = null;
   const solid = (mesh, rotation, position, size, tint, over = false) =>
-    items.push({ mesh, model: placed(rotation, position, size), tint, over });
+    items.push({ mesh, model: placed(rotation, position, size), tint, over, stands });
   const neutral = rgb("faint");
   const tints = {
     robot: [rgb("accent"), mixed(rgb("accent"), rgb("surface"), 0.52)],
@@ -16,6 +17,7 @@ const sceneItems = (design, agents, at, height = at.height) => {
     const tree = treeOf(agent, design, at.person);
     const poses = linkPoses(agent, tree, posture);
     const { role, designed } = agentOf(agent);
+    if (Object.keys(agents).length > 1) stands = scaled(-1, turned(facing(agent), [1, 0, 0]));
     tree.links.forEach((link, index) => {
       const tint = tints[role][designed && content.bodies.changing.includes(index) ? 0 : 1];
       const { rotation, position } = poses[index];
@@ -61,6 +63,7 @@ const sceneItems = (design, agents, at, height = at.height) => {
       );
     }
   }
+  stands = null;
   solid(
     "box",
     IDENTITY,

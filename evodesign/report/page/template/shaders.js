@@ -34,5 +34,5 @@ void main() {
   float sun = max(dot(n, light), 0.0);
   float rim = pow(1.0 - max(dot(n, view), 0.0), 3.0);
   vec3 shaded = tint.rgb * (0.50 + 0.22 * sky + 0.42 * sun) - 0.10 * rim;
-  result = vec4(shaded, 1.0);
+  result = vec4(shaded, 1.0) * tint.a;
 }`;

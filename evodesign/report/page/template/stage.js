@@ -6,12 +6,10 @@ let shownScene = null;
 const stillness = window.matchMedia("(prefers-reduced-motion: reduce)");
 
 const stageOf = () => {
-  const canvas = element("canvas", {
-    id: "posture",
-    tabindex: 0,
-    role: "application",
-    "aria-roledescription": "3D view",
-  });
+  const canvasOf = (id) =>
+    element("canvas", {
+      ...{ id, tabindex: 0, role: "application", "aria-roledescription": "3D view", "aria-label": "Posture" },
+    });
   const views = element(
     "div",
     { class: "views" },
@@ -36,17 +34,36 @@ const stageOf = () => {
       : []),
     key("var(--third)", `force of the ground, 1 m for ${NEWTONS_PER_METRE} N`),
   );
-  return element("div", { class: "stage" }, canvas, views, missing, legend);
+  const canvases = ["posture-beside", "posture"].map((id) => element("figure", {}, canvasOf(id), element("figcaption")));
+  return element("div", { class: "stage" }, ...canvases, views, missing, legend);
 };
 
-// The stage is made once: its canvas holds what the graphics card was given.
+// The stage is made once: its canvas holds what the graphics card was given. The one of a comparison is made with
+// the first.
+let viewerBeside = null;
+const viewerOf = (id) => {
+  const made = new Viewer(stageBox.querySelector(`#${id}`));
+  steer(made.canvas);
+  return made;
+};
 const theStage = () => {
-  if (!stageBox) {
-    stageBox = stageOf();
-    viewer = new Viewer(stageBox.querySelector("canvas"));
-    steer(viewer.canvas);
-  }
+  stageBox ??= stageOf();
+  viewer ??= viewerOf("posture");
+  if (comparing()) viewerBeside ??= viewerOf("posture-beside");
+  stageBox.classList.toggle("two", comparing());
   return stageBox;
+};
+
+const showBeside = (at) => {
+  const [first, second] = stageBox.querySelectorAll("figcaption");
+  [first.textContent, second.textContent] = comparing() ? [`Design ${state.beside}`, `Design ${state.selected}`] : ["", ""];
+  if (!comparing()) return;
+  const design = content.designs[state.beside] ?? NOTHING_KNOWN;
+  const posture = postureAt(design, at);
+  const label = posture ? `Design ${state.beside}, ${caseText(at)}` : `Design ${state.beside}: no posture of this case`;
+  viewerBeside.canvas.setAttribute("aria-label", label);
+  if (!posture) first.textContent = label;
+  viewerBeside.show(sceneItems(design, posture?.agents ?? {}, at, loadHeight(posture, at)));
 };
 
 const withoutStage = () =>
@@ -142,11 +159,12 @@ const playLift = (design) => {
 const showPosture = (number, design, moving) => {
   const at = shownCase();
   const posture = postureAt(design, at);
+  showBeside(at);
   const missing = stageBox.querySelector(".missing");
   missing.hidden = Boolean(posture);
   missing.textContent = posture ? "" : `No posture ${severalPairs ? "of" : "at"} ${caseText(at)}.`;
   stageBox
-    .querySelector("canvas")
+    .querySelector("#posture")
     .setAttribute(
       "aria-label",
       posture

@@ -49,6 +49,10 @@ const designsOf = (fields) => {
 content.designs = designsOf(content.designs);
 const { objectives, constraints, parameters, points } = content;
 
+// What joints and links are called, alone and in a sentence.
+const called = (name) => content.words[name] ?? name;
+const inWords = (text) => text.replaceAll(/\w+/g, called);
+
 const rowOf = new Map(points.number.map((number, row) => [number, row]));
 const rows = points.number.map((_, row) => row);
 const complete = (row) => objectives.every((objective) => points.objectives[objective.name][row] !== null);

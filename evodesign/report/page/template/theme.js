@@ -1,6 +1,7 @@
 // Light and dark: as the system says, until the reader says otherwise.
 
 const system = window.matchMedia("(prefers-color-scheme: dark)");
+const narrow = window.matchMedia("(max-width: 640px)");
 const root = document.documentElement;
 const colour = (name) => getComputedStyle(root).getPropertyValue(`--${name}`).trim();
 

@@ -13,7 +13,7 @@ const boxTrace = (design, agent, name, ink, filled) => {
     for (const [joint, torque] of Object.entries(torquesAt(design, agent, stop) ?? {})) {
       x.push(stopText(stop));
       y.push(Math.abs(torque));
-      text.push(`${plain(joint)}<br>${exact(torque)} N m`);
+      text.push(`${plain(called(joint))}<br>${exact(torque)} N m`);
     }
   }
   return {
@@ -77,8 +77,8 @@ const drawJoints = (place, design, agent) => {
       mode: "markers",
       name: stopText(stop),
       x: order.map((joint) => torques[joint] ?? null),
-      y: order.map(plain),
-      text: order.map((joint) => `${plain(joint)} at ${stopText(stop)}<br>${exact(torques[joint])} N m`),
+      y: order.map((joint) => plain(called(joint))),
+      text: order.map((joint) => `${plain(called(joint))} at ${stopText(stop)}<br>${exact(torques[joint])} N m`),
       hoverinfo: "text",
       marker: {
         size: 7,
@@ -101,7 +101,7 @@ const drawJoints = (place, design, agent) => {
         automargin: true,
         type: "category",
         ticks: "",
-        tickfont: { ...plotFont(), size: 11 },
+        tickfont: { ...plotFont(), size: 11.5 },
         dtick: 1,
         range: [-0.7, order.length - 0.3],
       }),

@@ -38,7 +38,14 @@ const loadedMeshes = (gl, program) =>
     }),
   );
 
-const VIEWS = { Oblique: [-2.15, 0.2], Side: [-Math.PI / 2, 0.04], "Behind robot": [-Math.PI, 0.12] };
+// From the front, whoever stands before the camera is seen through.
+const VIEWS = {
+  Oblique: [-2.15, 0.2],
+  Side: [-Math.PI / 2, 0.04],
+  ...(hasPeople() ? { "Robot's front": [0, 0.04], "Person's front": [-Math.PI, 0.04] } : { Front: [0, 0.04] }),
+};
+const SEEN_THROUGH = 0.16;
+const BEFORE_CAMERA = 0.85; // cosine of the angle between the camera and where an agent stands
 
 // Where the camera of all views stands: angles [rad] and distance [m].
 const camera = { turn: VIEWS["Oblique"][0], tilt: VIEWS["Oblique"][1], distance: 5.7 };
@@ -71,7 +78,8 @@ class Viewer {
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
-  // items: [{ mesh, model, tint, over }], `over`: drawn over everything else, without a shadow
+  // items: [{ mesh, model, tint, over, stands }], `over`: drawn over everything else, without a shadow;
+  // `stands`: on which side of the load, of what is seen through where it hides others
   show(items) {
     this.items = items;
     this.draw();
@@ -111,11 +119,14 @@ class Viewer {
     this.mesh("ground", placed(IDENTITY, [0, 0, 0], [2.4, 2.4, 1]), [0, 0, 0, 0], 1);
     if (camera.tilt > 0) this.shadows();
     gl.enable(gl.DEPTH_TEST);
-    for (const item of this.items.filter(({ over }) => !over))
-      this.mesh(item.mesh, item.model, [...item.tint, 1], 0);
+    const way = [Math.cos(camera.turn), Math.sin(camera.turn)];
+    const hides = ({ stands }) => stands && stands[0] * way[0] + stands[1] * way[1] > BEFORE_CAMERA;
+    const solid = this.items.filter(({ over }) => !over);
+    const draw = (items, opacity = 1) => items.forEach((item) => this.mesh(item.mesh, item.model, [...item.tint, opacity], 0));
+    draw(solid.filter((item) => !hides(item)));
+    draw(solid.filter(hides), SEEN_THROUGH);
     gl.clear(gl.DEPTH_BUFFER_BIT); // arrows stand inside the legs and are seen through them
-    for (const item of this.items.filter(({ over }) => over))
-      this.mesh(item.mesh, item.model, [...item.tint, 1], 0);
+    draw(this.items.filter((item) => item.over && !hides(item)));
   }
 
   // Every solid flattened onto the ground along the light; the stencil keeps shadows from adding up.
