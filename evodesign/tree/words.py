@@ -60,5 +60,5 @@ def in_words(name: str) -> str:
 
 def words_of(tree: Tree) -> dict[str, str]:
     """Those of a tree's joints and links whose words are not their name."""
-    names = [each.name for each in (*tree.joints, *tree.links)]
+    names = [*(joint.name for joint in tree.joints), *(link.name for link in tree.links)]
     return {name: words for name in names if (words := in_words(name)) != name}

@@ -221,7 +221,8 @@ def _designs(
     wanted = {*on_front, *(mark.number for mark in marked)}
     known = None if problem is None else _Known.of(problem, run)
     recorded = {mark.number for mark in marked}
-    quantities = [each.name for each in (*run.header.objectives, *run.header.constrained)]
+    header = run.header
+    quantities = [*(each.name for each in header.objectives), *(each.name for each in header.constrained)]
     return {
         evaluation.number: replace(
             _design(known, evaluation, opened.get(evaluation.number), recorded),

@@ -57,13 +57,15 @@ def _actuator(
         asked_by=row["asked_by"],
         share=row["share"],
         loss_w=sum(each["loss_w"] for each in rows.values()),
-        winding_c=duty and duty.temperature(_held(rows, cases) / row["rated_torque_n_m"]),
-        winding_limit_c=duty and duty.limit,
+        winding_c=None if duty is None else duty.temperature(_held(rows, cases) / row["rated_torque_n_m"]),
+        winding_limit_c=None if duty is None else duty.limit,
     )
 
 
 def _held(joints: Collection[str], cases: Sequence[CaseDetail]) -> float:
     """The largest torque of some of the robot's joints in any case, disturbed or not [N m]."""
-    instants = [instant for case in cases for instant in case.instants]
-    held = [agents[ROBOT] for each in instants for agents in (each.agents, *each.disturbed.values())]
-    return max((abs(one.torques_n_m.get(joint, 0.0)) for one in held for joint in joints), default=0.0)
+    held = []
+    for instant in (instant for case in cases for instant in case.instants):
+        held.append(instant.agents[ROBOT].torques_n_m)
+        held += [agents[ROBOT].torques_n_m for agents in instant.disturbed.values()]
+    return max((abs(torques.get(joint, 0.0)) for torques in held for joint in joints), default=0.0)

@@ -135,7 +135,8 @@ def _limits(designs: Mapping[int, Any]) -> tuple[list[dict[str, Any]], dict[int,
     return [limit for _, limit in kinds.values()], found
 
 
-def _rounded(value: float | None, digits: int) -> float | None:
+def _rounded(value: Any, digits: int) -> Any:
+    """A number with so many digits; what does not exist stays None."""
     return None if value is None else float(f"{value:.{digits}g}")
 
 

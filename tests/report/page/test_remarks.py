@@ -86,10 +86,9 @@ def changed(content: Content) -> Content:
             back = [msgspec.structs.replace(one, back_n=3600) for one in design.efforts]
             near = [ClearanceContent(first="robot l_hand", second="load", distance_m=1e-3)] * len(back)
             cases = [msgspec.structs.replace(one, fallbacks=3) for one in design.cases]
-            cases_of = tuple(twisted(one) for one in design.postures)
             design = msgspec.structs.replace(
                 design,
-                postures=cases_of,
+                postures=tuple(map(twisted, design.postures)),
                 hardware=hardware,
                 efforts=(*back,),
                 clearances=(*near,),
