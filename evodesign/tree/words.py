@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
-from evodesign.tree.model import Tree
+if TYPE_CHECKING:
+    from evodesign.tree.model import Tree
 
 SPINE = ("bending sideways", "bending forward", "turning")
 

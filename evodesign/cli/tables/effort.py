@@ -10,6 +10,7 @@ from evodesign.cli.output import markup
 from evodesign.cli.tables.people import Asked, hardest_cases
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.human.back import ACTION_LIMIT
+from evodesign.tree.words import in_words
 
 if TYPE_CHECKING:
     from evodesign.human.endurance import Endurance
@@ -50,7 +51,7 @@ def _figures(asked: Ergonomics) -> tuple[str, ...]:
         f"{asked.load_torque:.1f}",
         _time(asked.endurance),
         *("-" if score is None else str(score.whole) for score in scores),
-        "-" if asked.endurance is None else markup(asked.endurance.joint.joint),
+        "-" if asked.endurance is None else markup(in_words(asked.endurance.joint.joint)),
     )
 
 

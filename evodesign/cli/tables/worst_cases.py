@@ -9,6 +9,7 @@ from evodesign.cli.output import markup, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import AgentDetail, CaseDetail
 from evodesign.report.subset import ranked_joints
+from evodesign.tree.words import in_words
 
 JOINTS_SHOWN = 6
 """Rows of joints per agent; the others have smaller torques."""
@@ -40,7 +41,8 @@ def forces_by_height(cases: Sequence[CaseDetail]) -> FittedTable:
 def largest_torques(postures: Sequence[AgentDetail]) -> dict[str, Sequence[float | None]]:
     """Torques of the joints of largest torque, posture by posture; None where a person lacks the joint."""
     torques = [posture.torques_n_m for posture in postures]
-    return {joint: [by.get(joint) for by in torques] for joint in ranked_joints(torques)[:JOINTS_SHOWN]}
+    shown = ranked_joints(torques)[:JOINTS_SHOWN]
+    return {in_words(joint): [by.get(joint) for by in torques] for joint in shown}
 
 
 def contact_forces(postures: Sequence[AgentDetail]) -> dict[str, Sequence[float | None]]:

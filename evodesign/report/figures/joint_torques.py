@@ -18,6 +18,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evodesign.report.figures.paint import INK, clean, color_of, new_figure
+from evodesign.tree.words import in_words
 
 BOX, CLOUD = 0.36, 0.30
 """Width of a box, and distance of its dots."""
@@ -133,7 +134,7 @@ def _row_panel(
             label=f"load at {height:g} m",
             zorder=3,
         )
-    axes.set_yticks(range(len(joints)), list(joints), parse_math=False)
+    axes.set_yticks(range(len(joints)), [in_words(joint) for joint in joints], parse_math=False)
     axes.tick_params(axis="y", labelsize=8)
     axes.set_ylim(len(joints) - 0.4, -0.6)
     axes.set_xlabel("joint torque [N m]", color=INK, fontsize=9)

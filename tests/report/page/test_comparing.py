@@ -310,6 +310,7 @@ def test_every_label_has_11_pixels_and_none_lies_over_another(page: Tab, width: 
     page.wait_for(f"{PLOT}._fullLayout.width < {width}")
     page.value("document.getElementById('open-card').click()")
     page.value("document.querySelector('#families-section summary').click()")
+    page.value("document.querySelectorAll('input[name=torques]')[1].click()")
     page.value("new Promise(resolve => setTimeout(() => resolve(true), 400))")  # plots follow the width
     labels, over, small = page.value(READABLE)
     assert labels > 20

@@ -64,10 +64,11 @@ const drawJoints = (place, design, agent) => {
   const joints = [...new Set(solved.flatMap((stop) => Object.keys(torquesAt(design, agent, stop))))];
   const most = (joint) =>
     Math.max(...solved.map((stop) => Math.abs(torquesAt(design, agent, stop)[joint] ?? 0)));
-  const order = joints
-    .map((joint) => [joint, most(joint)])
-    .sort((a, b) => a[1] - b[1])
-    .map(([joint]) => joint);
+  const sizes = joints.map((joint) => [joint, most(joint)]).sort((a, b) => a[1] - b[1]);
+  const order = sizes.filter(([, size]) => size > NOTHING * sizes.at(-1)[1]).map(([joint]) => joint);
+  const idle = joints.length - order.length;
+  const rowName = (joint) => plain(called(joint)).replace(", ", narrow.matches ? ",<br>" : ", ");
+  place.previousSibling.textContent = `Each joint with its sign, the most loaded first${idle ? `; ${idle} more carry nothing` : ""}.`;
   const inks = (index) =>
     mixedColour("accent", "second", solved.length > 1 ? index / (solved.length - 1) : 0);
   const traces = solved.map((stop, index) => {
@@ -77,7 +78,7 @@ const drawJoints = (place, design, agent) => {
       mode: "markers",
       name: stopText(stop),
       x: order.map((joint) => torques[joint] ?? null),
-      y: order.map((joint) => plain(called(joint))),
+      y: order.map(rowName),
       text: order.map((joint) => `${plain(called(joint))} at ${stopText(stop)}<br>${exact(torques[joint])} N m`),
       hoverinfo: "text",
       marker: {
@@ -92,11 +93,11 @@ const drawJoints = (place, design, agent) => {
     place,
     traces,
     plotLayout({
-      height: 86 + 16 * order.length,
+      height: 86 + (narrow.matches && order.some((joint) => rowName(joint).includes("<br>")) ? 32 : 16) * order.length,
       showlegend: true,
       legend: { orientation: "h", x: 0, y: 1, yanchor: "bottom", font: plotFont() },
       margin: { l: 8, r: 8, t: 30, b: 40 },
-      xaxis: plotAxis("torque [N m]", { zeroline: true, zerolinecolor: colour("faint") }),
+      xaxis: plotAxis("torque [N m]", { zeroline: true, zerolinecolor: colour("faint"), nticks: 5, tickangle: 0 }),
       yaxis: plotAxis("", {
         automargin: true,
         type: "category",
@@ -157,7 +158,7 @@ const torqueSection = (number, design) => {
     element("div", { class: "choices", style: "margin-top:10px" }, agentSegments("torques", draw)),
     hint,
     boxes,
-    element("p", { class: "hint", text: "Each joint with its sign, the most loaded first." }),
+    element("p", { class: "hint" }),
     dots,
   );
   return { section, draw: () => draw(whose) };
