@@ -142,7 +142,7 @@ class _Transmitted:
         self._moments = {link.name: np.zeros(3) for link in tree.links}
         for link, force, moment in wrenches:
             self._forces[link] = self._forces[link] + force
-            self._moments[link] = self._moments[link] + moment + np.cross(_origin(places, link), force)
+            self._moments[link] = self._moments[link] + moment + _cross(_origin(places, link), force)
         for joint in reversed(tree.joints):
             self._forces[joint.parent] = self._forces[joint.parent] + self._forces[joint.child]
             self._moments[joint.parent] = self._moments[joint.parent] + self._moments[joint.child]
@@ -155,12 +155,18 @@ class _Transmitted:
             children = [c for c in children if (_origin(self._places, c) - middle) @ beam.axes[0] > 0.0]
         force = sum((self._forces[child] for child in children), start=np.zeros(3))
         moment = sum((self._moments[child] for child in children), start=np.zeros(3))
-        return force, moment - np.cross(point, force)
+        return force, moment - _cross(point, force)
 
     def torque(self, child: str, axis: Array) -> float:
         """The part of the moment about a link's origin, of all on its subtree, along an axis [N m]."""
         force, origin = self._forces[child], _origin(self._places, child)
-        return float(axis @ (self._moments[child] - np.cross(origin, force)))
+        return float(axis @ (self._moments[child] - _cross(origin, force)))
+
+
+def _cross(one: Array, other: Array) -> Array:
+    """Their cross product, in a fifth of numpy's time for three numbers."""
+    (a, b, c), (d, e, f) = one.tolist(), other.tolist()
+    return np.array([b * f - c * e, c * d - a * f, a * e - b * d])
 
 
 def _origin(places: Mapping[str, Placement], link: str) -> Array:
@@ -198,7 +204,7 @@ def _weights(tree: Tree, places: Mapping[str, Placement]) -> Iterator[Wrench]:
         inertia = link.inertia
         force = np.array([0.0, 0.0, -GRAVITY * float(inertia.mass)])
         centre = np.array(places[link.name].apply(inertia.center), float) - _origin(places, link.name)
-        yield link.name, force, np.cross(centre, force)
+        yield link.name, force, _cross(centre, force)
 
 
 def hand_deflection(
@@ -250,7 +256,7 @@ def _carried(
     middle = np.mean([_origin(places, sole) for sole in soles], axis=0)
     force = np.sum([each[1] for each in wrenches], axis=0)
     moment = np.sum(
-        [each[2] + np.cross(_origin(places, each[0]) - middle, each[1]) for each in wrenches], axis=0
+        [each[2] + _cross(_origin(places, each[0]) - middle, each[1]) for each in wrenches], axis=0
     )
     for sole in soles:
         yield sole, -force / len(soles), -moment / len(soles)

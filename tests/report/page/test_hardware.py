@@ -10,16 +10,20 @@ import pytest
 
 from evodesign.evaluation.bill import bill_of_materials
 from evodesign.evaluation.evaluate import Evaluator
+from evodesign.evaluation.logged_posture import logged_posture
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source
+from evodesign.quantities.hardware_quantities import winding_temperature
 from evodesign.records import Detail, Evaluation, Hold
 from evodesign.report.page import page_content, page_html
+from evodesign.report.page.hardware import hardware_content
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
 from evodesign.tree.words import in_words
 from tests.report.page.chromium import Tab
 from tests.report.page.reading import open_page, shown_as
+from tests.report.scenes import random_detail
 
 pytestmark = pytest.mark.needs_chromium
 
@@ -102,6 +106,23 @@ def test_the_tables_fit_into_a_card(chromium: Tab, page: Path, width: int) -> No
     for title in ("Bill of materials", "Actuators", "Walls"):
         section = SECTION.format(title=title)
         assert chromium.value(f"{section}.scrollWidth <= {section}.clientWidth"), title
+
+
+@pytest.mark.slow
+def test_windings_are_as_warm_as_the_quantity_says(repository: Path) -> None:
+    source = read_source(repository / "problems" / "icub_hardware.toml")
+    duty = "[duty]\nlifts_per_hour = 60\nhold_s = 20.0\nshift_h = 8.0\nwinding_limit_c = 120.0\n"
+    duty += "thermal_time_constant_s = 120.0\n"
+    problem = build_problem(msgspec.structs.replace(source, text=source.text + "\n" + duty))
+    values = problem.space.values((0.5,) * len(problem.space.parameters))
+    tree = problem.space.resized(problem.scene.designed_tree, problem.space.given(values, {}))
+    cases = random_detail(problem, 3).cases
+    content = hardware_content(problem, tree, cases)
+    assert content is not None
+    robot = replace(problem.scene.robot, tree=tree)
+    warmest = max(winding_temperature(robot, logged_posture(case.agents["robot"])) for case in cases)
+    assert max(one.winding_c for one in content.actuators) == pytest.approx(warmest)
+    assert {one.winding_limit_c for one in content.actuators} == {120.0}
 
 
 @pytest.mark.slow
