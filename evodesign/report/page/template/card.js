@@ -65,7 +65,7 @@ const cardHead = (row) => {
           : []),
       ),
     ),
-    element("p", { class: "labels", text: labels.join(" · ") }),
+    element("p", { class: "labels" }, labels.join(" · "), element("button", { type: "button", class: "open", id: "to-remarks", hidden: true })),
     worth(row),
     reachFigure(row),
   );

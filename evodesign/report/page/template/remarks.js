@@ -89,7 +89,9 @@ const remarkList = (row, design) => {
   const box = element("div", {}, title, list);
   const draw = () => {
     const found = [...designRemarks(row, design), ...caseRemarks(design, shownCase())].filter(Boolean);
-    box.hidden = !found.length;
+    box.hidden = byId("to-remarks").hidden = !found.length;
+    byId("to-remarks").textContent = `where to look: ${found.length}`;
+    byId("to-remarks").onclick = () => box.scrollIntoView({ block: "center" });
     list.replaceChildren(...found.map(([kind, text]) => element("li", { "data-remark": kind, text })));
   };
   return { box, draw };
