@@ -19,7 +19,7 @@ from tests.guess.humanoid import Build, humanoid
 from tests.robots import HUMANOIDS, NO_HUMANOIDS, SHAPELESS
 
 BUNDLED = sorted((Path(__file__).parents[2] / "problems" / "robots").glob("*.urdf"))
-HELD = ("g1", "icub_reduced", "talos")
+HELD = ("g1", "talos")
 """Public humanoids that are evaluated as well."""
 
 APART = "[collisions]  # nothing passes through anything\n"
