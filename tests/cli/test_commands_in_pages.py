@@ -47,6 +47,7 @@ NOT_RUN = {
     "python -m benchmarks": "measures for minutes or hours; its figures are in docs/benchmarks.md",
     "python -m docs.write_gallery": "searches for a quarter of an hour",
     "python -m docs.write_actuators": "writes the tables that tests/docs/test_actuators_tables.py compares",
+    "python -m docs.write_problem_file": "writes tables that tests/docs/test_quantities_table.py compares",
     "python -m docs.write_floors": "writes the picture that tests/docs/test_layout.py compares",
     "python -m docs.write_trust": "writes the tables that tests/cli/test_validate.py compares",
     "python -m tests.docs.notebooks": "stores what tests/docs/test_notebooks.py compares",
