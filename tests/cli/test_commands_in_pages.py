@@ -17,7 +17,11 @@ from tests.cli.test_columns import LINES
 REPOSITORY = Path(__file__).parents[2]
 PAGES = sorted(
     path
-    for path in (*REPOSITORY.glob("*.md"), *REPOSITORY.glob("docs/*.md"), *REPOSITORY.glob("examples/*.md"))
+    for path in (
+        *REPOSITORY.glob("*.md"),
+        *REPOSITORY.glob("docs/**/*.md"),
+        *REPOSITORY.glob("examples/*.md"),
+    )
     if path.name != "CHANGELOG.md"  # which tells of what there was, too
 )
 FENCE = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -48,6 +52,7 @@ NOT_RUN = {
     "python -m docs.write_gallery": "searches for a quarter of an hour",
     "python -m docs.write_actuators": "writes the tables that tests/docs/test_actuators_tables.py compares",
     "python -m docs.write_problem_file": "writes tables that tests/docs/test_quantities_table.py compares",
+    "python -m docs.write_commands": "writes the tables that tests/cli/test_main.py compares",
     "python -m docs.write_floors": "writes the picture that tests/docs/test_layout.py compares",
     "python -m docs.write_trust": "writes the tables that tests/cli/test_validate.py compares",
     "python -m tests.docs.notebooks": "stores what tests/docs/test_notebooks.py compares",

@@ -136,6 +136,27 @@ def test_quantities_over_cases_and_of_ones_own_may_be_named(
     assert places(validator, tables) == []
 
 
+SHOWN = [
+    (page.name, block)
+    for page in sorted((REPOSITORY / "docs").rglob("*.md"))
+    if page.name != "trust.md"  # whose table is no problem's
+    for block in re.findall(
+        r"^```toml\n(.*?)^```$", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL
+    )
+]
+
+
+@pytest.mark.parametrize(("page", "block"), SHOWN, ids=[page for page, _ in SHOWN])
+def test_tables_that_pages_show_are_valid(page: str, block: str, validator: Draft202012Validator) -> None:
+    """Each in a problem whose other tables are those of point_grasp.toml."""
+    whole = tomllib.loads((REPOSITORY / "problems" / PROBLEM).read_text(encoding="utf-8"))
+    shown = tomllib.loads(block)
+    for name, table in shown.items():
+        old = whole.get(name)
+        whole[name] = {**old, **table} if isinstance(old, dict) and isinstance(table, dict) else table
+    assert places(validator, whole) == [], page
+
+
 def test_every_key_says_what_it_does_and_every_text_has_a_key() -> None:
     for table in tables():
         found = list(keys(table))
