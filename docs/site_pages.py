@@ -6,6 +6,7 @@ them all in one folder: links are turned to where a file lies in the site, and w
 
 from __future__ import annotations
 
+import os.path
 import re
 from pathlib import Path
 from typing import Any
@@ -27,13 +28,14 @@ PAGES = {
 LINK = re.compile(r"(\]\()([^)\s#]+)(#[^)\s]*)?\)")
 
 
-def in_site(text: str, folder: Path, copied: set[str]) -> str:
+def in_site(text: str, folder: Path, copied: set[str], place: str = "") -> str:
     """A page's text with links as the site has them.
 
     Args:
         text: Markdown.
         folder: of the page in the repository.
         copied: gets the files to copy, from the repository's top.
+        place: folder of the page in the site.
     """
 
     def turned(found: re.Match[str]) -> str:
@@ -41,10 +43,10 @@ def in_site(text: str, folder: Path, copied: set[str]) -> str:
         if "://" in found[2] or not target.is_file() or not target.is_relative_to(REPOSITORY):
             return found[0]
         name = str(target.relative_to(REPOSITORY))
-        place = PAGES.get(name, name.removeprefix("docs/"))
+        there = os.path.relpath(PAGES.get(name, name.removeprefix("docs/")), place or ".")
         if name not in PAGES and not target.is_relative_to(DOCS):
             copied.add(name)
-        return f"{found[1]}{place}{found[3] or ''})"
+        return f"{found[1]}{there}{found[3] or ''})"
 
     return LINK.sub(turned, text)
 
@@ -56,8 +58,8 @@ def on_files(files: Files, config: Any) -> Files:
         text = (REPOSITORY / name).read_text(encoding="utf-8")
         text = in_site(text, (REPOSITORY / name).parent, copied)
         files.append(File.generated(config, place, content=text))
-    for page in DOCS.glob("*.md"):
-        in_site(page.read_text(encoding="utf-8"), DOCS, copied)
+    for page in DOCS.rglob("*.md"):
+        in_site(page.read_text(encoding="utf-8"), page.parent, copied)
     for name in copied:
         files.append(File.generated(config, name, abs_src_path=str(REPOSITORY / name)))
     return files
@@ -65,4 +67,7 @@ def on_files(files: Files, config: Any) -> Files:
 
 def on_page_markdown(markdown: str, page: Any, config: Any, files: Files) -> str:
     """Turn the links of pages of docs/."""
-    return markdown if page.file.generated_by else in_site(markdown, DOCS, set())
+    if page.file.generated_by:
+        return markdown
+    place = Path(page.file.src_uri).parent.as_posix()
+    return in_site(markdown, DOCS / place, set(), place)

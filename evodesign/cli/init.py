@@ -21,7 +21,7 @@ def init(
     """Write a problem file for a robot, and say what was guessed and why.
 
     Heading, hands, soles, trunk, joints and design parameters come from the robot's geometry. What cannot be
-    guessed is FILL IN in the file.
+    guessed is FILL IN in the file. The schema beside it lets editors check and complete it.
     """
     from evodesign.cli.output import console, print_commands, show_notes, write_text
     from evodesign.cli.tables.guesses import guesses_table
@@ -30,6 +30,7 @@ def init(
     from evodesign.guess.problem_text import guessed_problem, inertia_rule
     from evodesign.problem.meshes import with_meshes_beside
     from evodesign.problem.named_files import read_robot
+    from evodesign.problem.schema import SCHEMA_FILE, schema_file, with_schema_line
     from evodesign.problem.table import FILL_IN
     from evodesign.tree.urdf_read import InertiaRule, read_urdf
 
@@ -42,7 +43,8 @@ def init(
     urdf = Path(os.path.relpath(robot.resolve(), file.resolve().parent)).as_posix()
     tree = with_meshes_beside(tree, robot, model)
     guessed = guessed_problem(tree, urdf)
-    write_text(file, guessed.text, "--to")
+    write_text(file, with_schema_line(guessed.text), "--to")
+    write_text(file.parent / SCHEMA_FILE, schema_file(), "--to")
     show_notes(tree.notes)
     console().print(guesses_table(guessed.guesses, FILL_IN))
     print_commands(f"evodesign check {file}", f"evodesign evaluate {file}", f"evodesign search {file}")

@@ -34,6 +34,7 @@ from evodesign.cli.recover import recover
 from evodesign.cli.report import report
 from evodesign.cli.reproduce import reproduce
 from evodesign.cli.resume import resume
+from evodesign.cli.schema import schema
 from evodesign.cli.search import search
 from evodesign.cli.show import show
 from evodesign.cli.simulate import simulate
@@ -68,6 +69,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "check": check,
     "problems": problems,
     "init": init,
+    "schema": schema,
     "starts": starts,
     "validate": validate,
     "verify": verify,

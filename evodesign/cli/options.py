@@ -89,7 +89,7 @@ LeastGrowth = Annotated[
     typer.Option(
         min=0,
         metavar="PERCENT",
-        help="End when hardly any search would still grow by so much with as many evaluations; 0 for never.",
+        help="End when doubling the budget is unlikely to add this much hypervolume; 0 for never.",
         show_default="never",
     ),
 ]

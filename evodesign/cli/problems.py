@@ -23,8 +23,9 @@ def problems(
     """List the problems that come with evodesign, or copy one to begin your own with."""
     from evodesign.cli.output import print_json, print_lines
     from evodesign.errors import InputError
+    from evodesign.problem.copied import copy_source
     from evodesign.problem.shipped import shipped_problems
-    from evodesign.problem.source import copy_source, read_source
+    from evodesign.problem.source import read_source
 
     if (name is None) != (to is None):
         raise InputError("problems", "", "a NAME with --to DIR, or neither", "one of them")

@@ -40,7 +40,7 @@ def _why(run: RunLog) -> str:
     least, more = run.header.least_growth, f"to go on all the same: evodesign resume {run.directory}"
     if exhausted([(each.evaluations, each.hypervolume) for each in run.generations], least):
         return (
-            f"hardly any search would still grow by {least:g} % with as many evaluations; {more} "
+            f"doubling the budget is unlikely to add {least:g} % of hypervolume; {more} "
             "--least-growth-percent 0"
         )
     generations = run.header.stagnation_generations

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from evodesign.body.inertia import total
 from evodesign.body.placement import Placement, Vector, rotate
 from evodesign.collision.shapes import solids_of
+from evodesign.design.parameter import DesignParameter
 from evodesign.errors import InputError
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.guess.body_plan import body_plan
@@ -68,8 +69,8 @@ def preflight(problem: DesignProblem) -> tuple[Finding, ...]:
     }
     for index, parameter in enumerate(space.parameters):
         if parameter.links or parameter.joints:
-            name = f"{parameter.name} + {LONGER - 1.0:.0%}"
-            items[name] = functools.partial(_changes, problem, equipped, index)
+            words, value = _other(parameter, space.unscaled(robot.tree)[index])
+            items[f"{parameter.name} {words}"] = functools.partial(_changes, problem, equipped, index, value)
     found = [_tried(name, item) for name, item in items.items()]
     if not any(finding.fault for finding in found):
         found.append(_tried("holds the load", lambda: _holds(problem)))
@@ -180,11 +181,20 @@ def _mass(tree: Tree) -> float:
     return sum(float(link.inertia.mass) for link in tree.links)
 
 
-def _changes(problem: DesignProblem, before: WeldedTree, index: int) -> str:
-    """What a parameter that is a tenth larger changes, in the root's frame."""
+def _other(parameter: DesignParameter, value: float) -> tuple[str, float]:
+    """A value beside the unscaled robot's, in words as well: the next model, or a tenth more."""
+    if not parameter.models:
+        return f"+ {LONGER - 1.0:.0%}", value * LONGER
+    names, place = parameter.choice_names, parameter.choice_names.index(parameter.nearest(value)[0])
+    other = place + 1 if place + 1 < len(names) else place - 1
+    return f"{names[place]} to {names[other]}", parameter.choices[other]
+
+
+def _changes(problem: DesignProblem, before: WeldedTree, index: int, value: float) -> str:
+    """What another value of a parameter changes, in the root's frame."""
     robot, space = problem.scene.robot, problem.space
-    unscaled = space.unscaled(robot.tree)
-    values = [value * LONGER if i == index else value for i, value in enumerate(unscaled)]
+    values = [*space.unscaled(robot.tree)]
+    values[index] = value
     after = space.resized(robot.tree, space.given(values, {}))
     mass = _mass(after) - _mass(before.tree)
     moved = {

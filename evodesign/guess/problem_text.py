@@ -87,7 +87,7 @@ def _ground(plan: BodyPlan, found: Contacts) -> float:
 def _head(tree: Tree, urdf: str) -> Sequence[str]:
     return (
         f"# A problem for {json.dumps(tree.name)}, guessed from its file by `evodesign init`.",
-        "# `evodesign check` shows what the guesses mean; evodesign's README describes all keys.",
+        "# `evodesign check` shows what the guesses mean; docs/problem_file.md has all keys.",
         f"name = {json.dumps(tree.name)}",
         "",
         "[robot]",

@@ -39,15 +39,40 @@ class Gear(StrEnum):
 
 
 class CatalogueRow(Record, frozen=True, kw_only=True):
-    """An actuator of the catalogue, with the keys of `data/actuators.toml`; None: the source does not say.
+    """`[[actuator]]`: an actuator besides those of the catalogue, with the keys of the catalogue's rows.
 
-    Torques are at the output [N m]: rated for ever, repeated peak of the gear at starts and stops, peak for
-    seconds, momentary peak in collisions, ratcheting where a strain wave gear's teeth skip. They rise in this
-    order. `output_inertia_kg_m2` is the rotor's as seen at the output, `friction_torque_n_m` what turns the
-    output without current, `max_speed_rpm` the highest speed allowed where none without load is given, and
-    the thermal figures are those of the winding against the air. Mass and housing are without the drive where
-    `separate_drive` is true. `in_default_law` marks the rows that `actuator_law()` is fitted to; `words` has
-    the source's figures in its own units.
+    Torques are at the output and rise in the order rated, repeated peak, peak, momentary peak, ratcheting.
+    Nothing is guessed where a source does not say. Mass and housing are without the drive where
+    `separate_drive` is true.
+
+    Attributes:
+        model: name of the model.
+        mass_kg: mass.
+        peak_torque_n_m: peak torque for seconds.
+        source: where the figures come from.
+        maker: the maker. Since 0.3.
+        gear: kind of its gear. Since 0.3.
+        rated_torque_n_m: continuous torque.
+        repeated_peak_torque_n_m: repeated peak torque of the gear at starts and stops. Since 0.3.
+        momentary_peak_torque_n_m: momentary peak torque in collisions. Since 0.3.
+        ratcheting_torque_n_m: torque at which a strain wave gear's teeth skip. Since 0.3.
+        ratio: ratio of the gear.
+        torque_constant_n_m_per_a: torque at the output per ampere (rms) of phase current.
+        phase_resistance_ohm: resistance of one of three phases in star connection.
+        rotor_inertia_kg_cm2: inertia of the rotor.
+        output_inertia_kg_m2: inertia of the rotor as seen at the output. Since 0.3.
+        no_load_speed_rpm: speed without load.
+        max_speed_rpm: highest speed allowed, where none without load is given. Since 0.3.
+        friction_torque_n_m: torque that turns the output without current. Since 0.3.
+        no_load_loss_w: loss without load. Since 0.3.
+        thermal_resistance_k_per_w: thermal resistance of the winding against the air. Since 0.3.
+        thermal_time_constant_s: thermal time constant of the winding. Since 0.3.
+        price_eur: price.
+        diameter_m: diameter of the housing. Since 0.3.
+        length_m: length of the housing. Since 0.3.
+        separate_drive: whether the drive is a separate part. Since 0.3.
+        in_default_law: whether the scaling laws are fitted to it. Since 0.3.
+        words: the source's figures in its own units. Since 0.3.
     """
 
     model: str

@@ -12,9 +12,11 @@ from evodesign.problem.table import Name, NotNegative, Positive, Table
 class TaskWeightsTable(Table, frozen=True):
     """`[baseline.weights]`: W1 to W4 of the paper's tasks.
 
-    torque: of |tau|^2 in (10 N m)^2; density: of distances to the preferred densities in 1000 kg/m^3,
-    multiplied; center_of_pressure: of squared distances from the middle of the sole, in m^2; mass_height:
-    of 1 / z^2 of the standing robot's centre of mass, in 1/m^2.
+    Attributes:
+        torque: weight of the squared norm of torques in (10 N m)^2.
+        density: weight of the product of distances to the preferred densities in 1000 kg/m^3.
+        center_of_pressure: weight of squared distances from the sole's middle in m^2.
+        mass_height: weight of 1 / z^2 of the standing robot's centre of mass in 1/m^2.
     """
 
     torque: Positive = 1.0
@@ -26,8 +28,17 @@ class TaskWeightsTable(Table, frozen=True):
 class BaselineTable(Table, frozen=True):
     """`[baseline]`: the paper's joint problem, postures of all heights and the design in one program.
 
-    `start` names designs of the file `search.start` with which the starts begin; left out: all of it.
-    `compile` pays for hundreds of starts only: the program of all heights is long.
+    Attributes:
+        start: designs of the file `search.start` to start from; without it, all.
+        weights: weights of the paper's tasks.
+        preferred_densities_kg_per_m3: densities that the task of densities prefers.
+        joint_limits: false drops the limits of joints.
+        contact_limits: false drops the limits of contacts.
+        stance_limits: false drops the limits of stance.
+        length_bounds: false drops the bounds of lengths.
+        compile: compile the program; takes longer than it saves below hundreds of starts.
+        iterations: most iterations of a solve.
+        seconds: longest time of a solve.
     """
 
     start: tuple[Name, ...] | None = None

@@ -1,4 +1,7 @@
-"""`[design]` and `[[material]]`: what of the robot may change."""
+"""`[design]` and `[[material]]`: what of the robot may change.
+
+Beyond 300 lines: the file's tables, one after the other, with no function.
+"""
 
 from __future__ import annotations
 
@@ -15,9 +18,14 @@ Margin = Annotated[float, Meta(ge=1.0)]
 
 
 class LengthTable(Table, frozen=True):
-    """`[[design.length]]`: a length multiplier shared by links.
+    """`[[design.length]]`: a length multiplier that links share.
 
-    With `keep_mass` their masses stay those of the file, so that densities fall as links get longer.
+    Attributes:
+        name: name of the parameter.
+        links: links that get longer.
+        lower: least multiplier.
+        upper: largest multiplier.
+        keep_mass: whether the links keep the masses of the file, so that densities fall as links get longer.
     """
 
     name: Name
@@ -28,9 +36,14 @@ class LengthTable(Table, frozen=True):
 
 
 class SectionTable(Table, frozen=True):
-    """`[[design.section]]`: a multiplier of links' sections, across the axis along which they get longer.
+    """`[[design.section]]`: a multiplier of links' cross sections.
 
-    `across` names the only axis, in each link's frame, along which they change.
+    Attributes:
+        name: name of the parameter. Since 0.3.
+        links: links that get thicker. Since 0.3.
+        lower: least multiplier. Since 0.3.
+        upper: largest multiplier. Since 0.3.
+        across: the only axis along which boxes change, in each link's frame; without it, both. Since 0.3.
     """
 
     name: Name
@@ -41,11 +54,18 @@ class SectionTable(Table, frozen=True):
 
 
 class JointTable(Table, frozen=True):
-    """`[[design.joint]]`: a joint, or two that are mirror images; bounds of what changes of them.
+    """`[[design.joint]]`: place, axis and limits of a joint, or of a mirrored pair.
 
-    `offset_m` moves the first joint's origin along `along`, an axis of its parent link; `tilt_deg` turns its
-    axis about `about`, an axis of its own frame; `lower_deg` and `upper_deg` are its limits. The other joint
-    of a pair changes as the mirror image.
+    Attributes:
+        name: name of the parameter. Since 0.3.
+        joints: one joint, or two that are mirror images: the second changes as the first's image. Since
+            0.3.
+        offset_m: bounds of the origin's offset along `along`. Since 0.3.
+        along: axis of the parent link. Since 0.3.
+        tilt_deg: bounds of the angle by which the joint's axis turns about `about`. Since 0.3.
+        about: axis of the joint's own frame. Since 0.3.
+        lower_deg: bounds of the joint's lower limit. Since 0.3.
+        upper_deg: bounds of the joint's upper limit. Since 0.3.
     """
 
     name: Name
@@ -59,7 +79,17 @@ class JointTable(Table, frozen=True):
 
 
 class DensityTable(Table, frozen=True):
-    """`[[design.density]]`: a density shared by links: within bounds, or that of one of some materials."""
+    """`[[design.density]]`: a density that links share: within bounds, or of one of some materials.
+
+    Docs: materials.md.
+
+    Attributes:
+        name: name of the parameter.
+        links: links of that density.
+        lower_kg_per_m3: least density.
+        upper_kg_per_m3: largest density.
+        materials: names of materials, in place of bounds.
+    """
 
     name: Name
     links: Annotated[tuple[Name, ...], Meta(min_length=1)]
@@ -69,7 +99,13 @@ class DensityTable(Table, frozen=True):
 
 
 class MaterialTable(Table, frozen=True):
-    """`[[material]]`: a material beside those of the catalogue, and where its density comes from."""
+    """`[[material]]`: a material besides those of the catalogue.
+
+    Attributes:
+        name: its name.
+        density_kg_per_m3: density.
+        source: where the density comes from.
+    """
 
     name: Name
     density_kg_per_m3: Positive
@@ -77,9 +113,15 @@ class MaterialTable(Table, frozen=True):
 
 
 class WallTable(Table, frozen=True):
-    """`[[design.wall]]`: links that are hollow: a fixed thickness or bounds of it, and what they are made of.
+    """`[[design.wall]]`: links that are hollow.
 
-    Without `material`, a `[[design.density]]` of the same links chooses it.
+    Docs: hardware.md.
+
+    Attributes:
+        name: name of the parameter.
+        links: hollow links.
+        thickness_m: thickness of the wall, or bounds of it.
+        material: what the wall is made of; without it, a `[[design.density]]` of the same links says.
     """
 
     name: Name
@@ -93,9 +135,20 @@ class WallTable(Table, frozen=True):
 class ActuatorTable(Table, frozen=True):
     """`[[design.actuator]]`: what drives a group of joints.
 
-    Any rated torque within bounds, a model, or as many times what is asked of it as `margin` bounds. One that
-    is no model follows the law of its `gear`. With `mount` it is a body, the cylinder of its housing about
-    each joint's axis; left out, a ball of its mass.
+    One of `rated_torque_n_m`, `models` and `margin` is given.
+
+    Docs: hardware.md.
+
+    Attributes:
+        name: name of the parameter.
+        joints: joints that have this actuator.
+        rated_torque_n_m: bounds of the rated torque.
+        models: names of catalogue rows or `[[actuator]]` tables to choose from.
+        margin: bounds of the factor by which the actuator exceeds what postures and load cases ask of it.
+        mount: makes it a body: the housing's cylinder about each joint's axis, `inline` in the joint or
+            `offset` to one side; without it, a ball of its mass. Since 0.3.
+        gear: whose scaling law it follows: `planetary` or `strain_wave`; without it, `planetary`. Since
+            0.3.
     """
 
     name: Name
@@ -133,10 +186,13 @@ class Pushed(StrEnum):
 
 
 class HoldTable(Table, frozen=True):
-    """`hold` of a load case: a payload in hands, each with the same part of its weight.
+    """`hold` of a load case: a payload in the hands.
 
-    With `height_m` the joints `raised_by` move by one offset until the first of the hands is there, above the
-    soles.
+    Attributes:
+        mass_kg: its mass.
+        hand: which hands, each with the same part of its weight.
+        height_m: height of the first hand above the soles; without it, as the posture has it.
+        raised_by: joints that move by one offset until the hand is at `height_m`.
     """
 
     mass_kg: Positive
@@ -146,7 +202,13 @@ class HoldTable(Table, frozen=True):
 
 
 class PushTable(Table, frozen=True):
-    """`push` of a load case: a level force on the robot; 0 degrees is ahead, 90 to its left."""
+    """`push` of a load case: a level force on the robot.
+
+    Attributes:
+        force_n: the force.
+        at: where it acts.
+        direction_deg: 0 pushes ahead, 90 to the robot's left.
+    """
 
     force_n: Positive
     at: Pushed = Pushed.HANDS
@@ -154,11 +216,19 @@ class PushTable(Table, frozen=True):
 
 
 class LoadCaseTable(Table, frozen=True):
-    """`[[load_case]]`: a posture in which the robot stands alone, for what it asks of actuators.
+    """`[[load_case]]`: a posture in which the robot stands alone, for which actuators are sized.
 
-    It may `hold` a payload or be given a `push`, or both. `joints_deg` gives the joints that are not at zero.
-    `balance` names groups of joints that each move by one offset until the robot is balanced: one group on
-    both feet, two on one. The actuators' peak torque is `factor` times the torques of the case.
+    Docs: hardware.md.
+
+    Attributes:
+        name: name in results.
+        balance: groups of joints that move by one offset each until the robot is balanced: one group on
+            both feet, two on one.
+        feet: feet on which it stands.
+        joints_deg: angles of joints by name; others are at 0.
+        factor: peak torque of the actuators over the torques of the case.
+        hold: a payload in its hands.
+        push: a force on it.
     """
 
     name: Name
@@ -171,7 +241,11 @@ class LoadCaseTable(Table, frozen=True):
 
 
 class HardwareTable(Table, frozen=True):
-    """`[hardware]`: the share of a hollow link's mass in the file that stays beside its wall."""
+    """`[hardware]`: what hollow links keep.
+
+    Attributes:
+        non_structural_share: share of a hollow link's mass in the file that stays besides its wall.
+    """
 
     non_structural_share: Share = 0.3
 
@@ -179,7 +253,16 @@ class HardwareTable(Table, frozen=True):
 class DutyTable(Table, frozen=True):
     """`[duty]`: how often and how long the robot holds the load, and what its windings bear.
 
-    `winding_limit_c` is what the rated torque leads to in the end, in air of 25 degrees.
+    Docs: hardware.md.
+
+    Attributes:
+        lifts_per_hour: lifts in an hour. Since 0.3.
+        hold_s: duration of a hold. Since 0.3.
+        shift_h: duration of a shift. Since 0.3.
+        winding_limit_c: winding temperature that the rated torque leads to, in air of 25 degrees. Since
+            0.3.
+        thermal_time_constant_s: thermal time constant of the winding. Since 0.3.
+        air_c: temperature of the air. Since 0.3.
     """
 
     lifts_per_hour: Positive
@@ -191,7 +274,16 @@ class DutyTable(Table, frozen=True):
 
 
 class AllocationTable(Table, frozen=True):
-    """`[[design.allocation]]`: how a design shares the load; see `design.allocation` for the names."""
+    """`[[design.allocation]]`: how a design shares the load; needs rigid grasps.
+
+    Docs: sharing.md.
+
+    Attributes:
+        name: `effort_ratio`: log10 of the robot's effort weight over the person's; or `robot_share`: the
+            robot's share of the load's weight.
+        lower: lower bound.
+        upper: upper bound.
+    """
 
     name: Name
     lower: float
@@ -199,7 +291,17 @@ class AllocationTable(Table, frozen=True):
 
 
 class DesignTable(Table, frozen=True):
-    """`[design]`: what may change."""
+    """`[design]`: what may change of the robot; each table is one design parameter or a group of them.
+
+    Attributes:
+        length: lengths.
+        section: cross sections. Since 0.3.
+        joint: joints. Since 0.3.
+        density: densities.
+        wall: walls of hollow links.
+        actuator: actuators.
+        allocation: sharing of the load.
+    """
 
     length: tuple[LengthTable, ...] = ()
     section: tuple[SectionTable, ...] = ()

@@ -36,7 +36,12 @@ MOST_SAMPLES = 1000
 
 
 class HandsTable(Table, frozen=True):
-    """Frames that meet the load: of both hands, or of the one that holds it."""
+    """`hands`: the frames that meet the load, of both hands or of the one that holds it.
+
+    Attributes:
+        left: frame of the left hand.
+        right: frame of the right hand.
+    """
 
     left: Name | None = None
     right: Name | None = None
@@ -47,14 +52,25 @@ ICUB_HANDS = HandsTable(left="l_hand_frame", right="r_hand_frame")
 
 
 class BaseTable(Table, frozen=True):
-    """The frame on the ground of a robot on wheels, z up, and the rectangle about it on which it stands."""
+    """`[robot.base]`: the ground contact of a robot on wheels, in place of `soles`.
+
+    Attributes:
+        frame: frame on the ground, z up. Since 0.3.
+        size_m: length and width of the rectangle about the frame on which the robot stands. Since 0.3.
+    """
 
     frame: Name
     size_m: tuple[Positive, Positive]
 
 
 class SolesTable(Table, frozen=True):
-    """Frames under the feet and the size of a sole (length, width)."""
+    """`soles`: frames under the feet, x ahead and z up, and the size of a sole.
+
+    Attributes:
+        left: frame under the left foot.
+        right: frame under the right foot.
+        size_m: length and width of a sole.
+    """
 
     left: Name = "l_sole"
     right: Name = "r_sole"
@@ -62,7 +78,14 @@ class SolesTable(Table, frozen=True):
 
 
 class FrameTable(Table, frozen=True):
-    """A frame to add to a URDF that lacks it: a sole under a foot, a palm in a hand."""
+    """`[[robot.frames]]`, `[[human.frames]]`: a frame that the URDF lacks, such as a palm or a sole.
+
+    Attributes:
+        name: name of the new frame.
+        link: link that carries it.
+        xyz_m: origin in the link's frame.
+        rpy_rad: roll, pitch and yaw of its axes in the link's frame.
+    """
 
     name: Name
     link: Name
@@ -113,14 +136,34 @@ class TorqueLimits(StrEnum):
 
 
 class RobotTable(Table, frozen=True):
-    """`[robot]`: a URDF (or MJCF, which MuJoCo reads), and the parts of it that matter.
+    """`[robot]` or `[[robot]]`: a robot's model file, and the parts of it that matter.
 
-    `inertia` says where masses come from; see `InertiaRule`. `facing` is the direction in the root's axes in
-    which the robot looks. `packages` are folders in which `package://` and `model://` are found, beside those
-    of the environment; `meshes = false` leaves out what the URDF shows as meshes. `knee_flexion_deg` and
-    `elbow_flexion_deg` are the least angles of knees and elbows in postures, zero for straight limbs; left
-    out, joints take their whole ranges. One like it stands at each of `sides`. A robot on wheels has a `base`
-    in place of `soles`.
+    The design changes the first robot, at each of its `sides`; other robots stay as their files have them.
+
+    Attributes:
+        urdf: its file, URDF or MJCF (MJCF needs the extra `mjcf`), from the problem's folder.
+        sides: sides of the load at which a copy of the robot stands and looks at the load, in the world's
+            axes. Since 0.3.
+        packages: folders in which `package://` and `model://` are found, besides `ROS_PACKAGE_PATH` and
+            the URDF's own folders.
+        meshes: false leaves out the visual meshes; their links then have no shape.
+        facing: direction in the root link's axes in which the robot looks.
+        inertia: source of masses and inertias: `shapes` computes them from primitive shapes of one
+            density per link, `file` takes the file's, `auto` takes the file's for links with meshes and
+            shapes for the others.
+        frames: frames that the file lacks.
+        hands: frames that meet the load.
+        soles: frames under the feet; without it and without `base`, the iCub's `l_sole` and `r_sole`.
+        base: for a robot on wheels, in place of `soles`. Since 0.3.
+        trunk: frames that keep the distance `limits.trunk_clearance_m` from the load.
+        joints: joints that move; empty: all.
+        torque_limits: `hard` keeps every joint torque of every posture within the limits of the file and
+            of `torque_limits_n_m`.
+        torque_limits_n_m: limits of joints by name, in place of the file's.
+        knee_flexion_deg: least knee flexion in postures, 0 is straight; without it, the joint's whole
+            range. Since 0.3.
+        elbow_flexion_deg: least elbow flexion in postures, 0 is straight; without it, the joint's whole
+            range. Since 0.3.
     """
 
     urdf: Name
@@ -142,7 +185,12 @@ class RobotTable(Table, frozen=True):
 
 
 class PopulationForm(Table, frozen=True):
-    """People at percentiles of published distributions of stature and mass."""
+    """`population` of a person: one person for each percentile of stature and mass.
+
+    Attributes:
+        sex: whose percentiles.
+        percentiles: from 5 to 95, each once.
+    """
 
     sex: PopulationSex
     percentiles: tuple[float, ...]
@@ -157,16 +205,38 @@ class JointRanges(StrEnum):
 
 
 class HumanTable(Table, frozen=True):
-    """`[human]` or `[[human]]`: a person by stature, mass and sex, or a URDF with the names of its parts.
+    """`[human]` or `[[human]]`: a person of given stature, mass and sex, a population, or a URDF.
 
-    `population` stands for several people. `strengths_n_m` gives the largest torques of joints in their
-    negative and positive direction, for a URDF or instead of published ones. `posture` says
-    whether measured postures draw the person, `joint_ranges` whether the
-    joints of the spine share ranges, or one flexion and one bending within them; `shoulder_width` how far a
-    generated person's shoulder joints are apart. `gaze_cone_deg` is the largest angle of the load from where
-    the head looks. Of a person with a measured posture, `spread` says beside how many people of the measured
-    distribution a front is evaluated once its search has ended, `posture_sample` which of them this one is.
-    People at different sides hold the load together; of those at one `side`, each in turn.
+    People at different sides of the load hold it together; people at the same side hold it in turn.
+
+    Docs: people.md, person.md.
+
+    Attributes:
+        name: name in results; each of several people has one, a population names its own.
+        side: side of the load at which the person stands and looks at it, in the world's axes. Since 0.3.
+        population: several people in place of one: `{ sex = "both", percentiles = [5, 50, 95] }`.
+        stature_m: body height, from 1.45 to 2.05.
+        mass_kg: body mass, from 40 to 140.
+        sex: whose proportions and strengths.
+        urdf: model file of a person, in place of stature, mass and sex.
+        frames: frames that the URDF lacks.
+        hands: as of a robot; only with `urdf`.
+        soles: as of a robot; only with `urdf`.
+        trunk: as of a robot; only with `urdf`.
+        joints: as of a robot; only with `urdf`.
+        strengths_n_m: largest torques of joints by name, in negative and positive direction, in place of
+            published strengths.
+        posture: `measured` draws the posture to those of measured people, `least_torque` minimises torque
+            alone; without it, `measured` for a generated person and `least_torque` for a URDF. Since 0.3.
+        joint_ranges: `separate` gives each joint its own range, `coupled` adds published ranges that
+            joints of the spine share, `rhythm` makes the spine one flexion and one bending; without it,
+            `rhythm` with a measured posture, otherwise `separate`. `rhythm` since 0.3.
+        shoulder_width: distance of the shoulder joints: the outer shoulder width of Drillis and Contini,
+            or that of the joint centres; without it, `drillis_contini`.
+        gaze_cone_deg: largest angle of the load from the direction of the head; without it, no limit.
+        spread: after a search, evaluate its front beside so many people drawn from the measured
+            distribution. Since 0.3.
+        posture_sample: take this one of the `spread` people in place of the mean. Since 0.3.
     """
 
     name: Name | None = None
@@ -191,18 +261,34 @@ class HumanTable(Table, frozen=True):
 
 
 class GraspsTable(Table, frozen=True):
-    """Grasp points of an agent's hands, from the box's centre, in the world's axes."""
+    """`robot_grasps_m`, `human_grasps_m`: grasp points from the box's centre, in the world's axes.
+
+    Attributes:
+        left: grasp point of the left hand, in m.
+        right: grasp point of the right hand, in m.
+    """
 
     left: Point
     right: Point
 
 
 class PayloadTable(Table, frozen=True):
-    """`[payload]` or `[[payload]]`: a box; size is depth (robot to person), width, height.
+    """`[payload]` or `[[payload]]`: a box; of several loads, each person holds each at each height.
 
-    `hand_moment_n_m` bounds each component of the moment that a rigid hand passes: left out, by what wrists
-    bear; `inf` for no bound. `grasp_direction` says from where forearms may come to the load, within a cone
-    of half angle `grasp_cone_deg`.
+    Attributes:
+        size_m: depth (from robot to person), width and height.
+        mass_kg: mass.
+        name: name in results; without it, the mass.
+        center_of_mass_m: centre of mass from the box's centre, inside the box.
+        grasp: what a hand transmits: `point` a force, `rigid` a force and a moment.
+        hand_moment_n_m: largest moment of a rigid hand about each axis; `inf` for no bound; without it,
+            7.0, what wrists bear (Delp, Grierson and Buchanan 1996).
+        grasp_direction: where forearms come from: `side` from outside and behind, `under` from below and
+            behind.
+        grasp_cone_deg: largest angle of a forearm from `grasp_direction`; without it, 60.
+        robot_grasps_m: grasp points of the robot; without it, at 0.4 of the edge from its middle, 0.25
+            beside a neighbour, in the middle for one hand.
+        human_grasps_m: the same of the person.
     """
 
     size_m: tuple[Positive, Positive, Positive]
@@ -218,14 +304,29 @@ class PayloadTable(Table, frozen=True):
 
 
 class WeightsTable(Table, frozen=True):
-    """Weights of the squared torques in the posture problem."""
+    """`effort_weights`: weights of the squared joint torques in the posture problem.
+
+    Attributes:
+        robot: weight of the robot's torques.
+        human: weight of the person's torques.
+    """
 
     robot: NotNegative = 1.0
     human: NotNegative = 1.0
 
 
 class LiftTable(Table, frozen=True):
-    """`[[task.lift]]`: the load goes straight up or down, from rest to rest; see `tasks.Lift`."""
+    """`[[task.lift]]`: the load moves straight up or down, from rest to rest.
+
+    Docs: motion.md.
+
+    Attributes:
+        from_m: height of the load's centre at the start. Since 0.3.
+        to_m: height at the end. Since 0.3.
+        seconds: duration. Since 0.3.
+        profile: height over time: `minimum_jerk`, or `free` for the optimiser's choice. Since 0.3.
+        knots: knots of the splines. Since 0.3.
+    """
 
     from_m: Positive
     to_m: Positive
@@ -235,9 +336,17 @@ class LiftTable(Table, frozen=True):
 
 
 class TaskTable(Table, frozen=True):
-    """`[task]`: heights at which the load is held, lifts, and how robot and person divide the work.
+    """`[task]`: heights at which the load is held, lifts, and how robot and person share the effort.
 
-    `robot_share` is the part of the load's weight that the robot carries; left out: the share of least cost.
+    Attributes:
+        heights_m: heights of the load's centre; a design that misses one is infeasible by the missing
+            distance.
+        lift: lifts, besides or in place of `heights_m`. Since 0.3.
+        effort_weights: weights of squared torques in the posture problem; without it, 1 and 1.
+        robot_share: share of the load's weight that the robot carries, with rigid grasps; without it, the
+            posture problem decides.
+        disturbed_effort: effort over the undisturbed and all disturbed load cases: their `mean` or the
+            `worst`.
     """
 
     heights_m: Annotated[tuple[Positive, ...], Meta(min_length=1)] | msgspec.UnsetType = msgspec.UNSET
@@ -248,11 +357,16 @@ class TaskTable(Table, frozen=True):
 
 
 class DisturbanceTable(Table, frozen=True):
-    """`[[disturbance]]`: a further load case of a posture, with wrenches and torques of its own.
+    """`[[disturbance]]`: a further load case of each posture, with its own torques and wrenches.
 
-    `load_mass_share` adds to the load's mass, `center_of_mass_m` to its centre of mass; `push_n` is a force
-    in the world's axes (x from the robot to the person, z up) on the load's centre or on the last frame of
-    an agent's trunk.
+    Docs: disturbances.md.
+
+    Attributes:
+        name: name in results; without it, numbered.
+        load_mass_share: added mass, as a share of the load's.
+        center_of_mass_m: shift of the load's centre of mass.
+        push_n: force in the world's axes: x from the robot to the person, z up.
+        at: where it acts: `load`, or the last frame of an agent's trunk: `robot`, `human`, `robot_2`.
     """
 
     name: Name | None = None
@@ -263,9 +377,21 @@ class DisturbanceTable(Table, frozen=True):
 
 
 class LimitsTable(Table, frozen=True):
-    """`[limits]`: ground and stance; see `StanceLimits` and `Ground` for each.
+    """`[limits]`: limits of ground contact and stance, for robots and people.
 
-    Left out, clearance of the trunk and distance of the feet follow from the size of a generated person.
+    Attributes:
+        friction: Coulomb coefficient of soles on the ground; our choice.
+        torsional_friction_m: largest moment about a foot's normal, over its normal force; our choice.
+        least_foot_force_n: least normal force of a foot: contact is unilateral.
+        trunk_clearance_m: least distance along x of the trunk's frames from the load's near edge; without
+            it, 0.15 for a robot, half the trunk's depth and 2 cm for a person.
+        feet_apart_m: least and largest sideways distance of the soles' origins; without it, [0.12, 0.50]
+            for a robot; for a person from soles that touch to legs 20 degrees outwards.
+        feet_stagger_m: largest difference of the soles' origins along x; our choice.
+        feet_gap_m: least sideways distance of the soles' edges; without it, none; our choice.
+        foot_yaw_rad: largest yaw of a foot; our choice.
+        base_tilt_rad: largest roll, pitch and yaw of the root link; our choice.
+        push_n: largest internal force between the agents; our choice.
     """
 
     friction: Positive = 0.5
@@ -281,10 +407,15 @@ class LimitsTable(Table, frozen=True):
 
 
 class CollisionsTable(Table, frozen=True):
-    """`[collisions]`: bodies keep clear of each other, of load, floor and partner by at least `margin_m`.
+    """`[collisions]`: bodies do not overlap each other, load, floor or partner.
 
-    `ignore` names pairs that may overlap, `part` pairs that have rows in programs beside those that are found
-    to come near each other. Left out, bodies may pass through anything.
+    Without the table they may overlap.
+
+    Attributes:
+        margin_m: least distance of bodies.
+        ignore: pairs of links (or of a link and `load`, `floor`, `partner`) that may overlap, besides
+            those that overlap as built; `evodesign check` lists these.
+        part: pairs that every program separates, besides those that are found to come close.
     """
 
     margin_m: NotNegative = 0.005
@@ -293,21 +424,39 @@ class CollisionsTable(Table, frozen=True):
 
 
 class ObjectivesTable(Table, frozen=True):
-    """`[objectives]`: names from the registry of objectives."""
+    """`[objectives]`: quantities to optimise, by [name](#quantities).
+
+    Attributes:
+        minimise: those to minimise.
+        maximise: those to maximise.
+    """
 
     minimise: tuple[Name, ...] = ()
     maximise: tuple[Name, ...] = ()
 
 
 class BoundsTable(Table, frozen=True):
-    """An entry of `[constraints]`: a lower bound, an upper one, or both, in the unit that its key carries."""
+    """An entry of `[constraints]`: bounds of a [quantity](#quantities), in the unit that the key carries.
+
+    Attributes:
+        lower: lower bound.
+        upper: upper bound.
+    """
 
     lower: float | None = None
     upper: float | None = None
 
 
 class DescriptorTable(Table, frozen=True):
-    """`[[search.descriptor]]`: what tells kinds of designs apart, as in `records.Descriptor`."""
+    """`[[search.descriptor]]`: an axis that tells kinds of designs apart, for `map-elites`.
+
+    Attributes:
+        name: a parameter, quantity or torque at a height, or a sum such as `length.upper_arm +
+            length.forearm`.
+        lower: lower end; without it, that of the parameters.
+        upper: upper end; without it, that of the parameters.
+        cells: cells between the ends.
+    """
 
     name: Name
     lower: float | None = None
@@ -316,13 +465,22 @@ class DescriptorTable(Table, frozen=True):
 
 
 class SearchTable(Table, frozen=True):
-    """`[search]`: how the design space is searched; `start` names a file of designs to begin with.
+    """`[search]`: how the design space is searched.
 
-    `population` left out is what suits the algorithm: 8 for `surrogate`, which learns once a generation, 48
-    for the others. `gradients` says whether every evaluation comes with its gradients; left out, as the
-    algorithm wants it. `reference` names values of objectives beyond which a design counts for nothing to a
-    search that measures hypervolumes against a point (`surrogate`). Descriptors tell kinds of designs apart
-    for `map-elites`.
+    Attributes:
+        algorithm: `surrogate`, `nsga2`, `cma-es`, `map-elites`, `random`, or `MODULE:CLASS`.
+        population: evaluations of a generation; without it, 8 for `surrogate`, 48 for the others.
+        evaluations: evaluations of the whole run.
+        seed: seed of all random numbers.
+        hours: wall time of a session; without it, no limit.
+        stagnation_generations: stop when the hypervolume has not grown for so many generations.
+        least_growth_percent: stop when doubling the budget is unlikely to add this much hypervolume.
+        start: file of named designs that are evaluated first.
+        asynchronous: true works without generations, so that no worker waits for others.
+        gradients: whether evaluations come with gradients; without it, as the algorithm uses them.
+        reference: values of objectives beyond which a design does not count for the surrogate's
+            hypervolume.
+        descriptor: axes of `map-elites`.
     """
 
     algorithm: Name = "surrogate"
@@ -340,7 +498,20 @@ class SearchTable(Table, frozen=True):
 
 
 class SolverTable(Table, frozen=True):
-    """`[solver]`: how the inner problems are solved; limits of a solve and of a whole evaluation."""
+    """`[solver]`: how the inner problems are solved, and limits of an evaluation.
+
+    Attributes:
+        symmetry: `auto` solves symmetric problems symmetrically, averaging what nearly is; `on` refuses
+            others, `off` solves the whole, `polish` solves symmetrically, then whole.
+        start_portfolio: false starts each solve from two fixed starts only.
+        method: `native` is our interior-point method in C, with IPOPT where it fails; `ipopt` is IPOPT
+            alone.
+        compile: compile the inner problems: with TinyCC at once, with gcc or clang in the background.
+        iterations: most iterations of a solve.
+        seconds: longest time of a solve.
+        evaluation_seconds: an evaluation that takes longer is ended.
+        evaluation_memory_gb: an evaluation that takes more memory is ended.
+    """
 
     symmetry: Symmetry = Symmetry.AUTO
     start_portfolio: bool = True
@@ -353,10 +524,31 @@ class SolverTable(Table, frozen=True):
 
 
 class ProblemFile(Table, frozen=True):
-    """A whole problem file; `description` says in a sentence what it is about.
+    """A whole problem file.
 
-    A design changes the first robot, wherever it stands; others stay as their files have them. Without
-    `human` robots hold the load alone, without `robot` people do, and there is no `design`.
+    Without `human` robots hold the load alone; without `robot` people do, and there is no `design`.
+
+    Attributes:
+        name: name of the problem.
+        payload: the load.
+        task: what is done with it.
+        objectives: what is optimised.
+        robot: the robot.
+        design: what may change of the robot.
+        human: the person.
+        constraints: bounds of quantities.
+        material: materials besides the catalogue's.
+        actuator: actuators besides the catalogue's.
+        hardware: settings of hollow links.
+        duty: how the robot is used, for winding temperatures. Since 0.3.
+        load_case: what else actuators are sized for.
+        limits: limits of ground contact and stance.
+        search: how to search.
+        solver: how to solve.
+        baseline: the paper's joint problem.
+        disturbance: further load cases of postures.
+        collisions: whether bodies may overlap.
+        description: one sentence on the problem.
     """
 
     name: Name

@@ -26,7 +26,8 @@ def payloads(tables: ProblemFile, source: ProblemSource) -> tuple[Payload, ...]:
     """The loads of the `payload` tables; where there are several, each has a label of its own.
 
     Raises:
-        InputError: a centre of mass outside the box, a moment of point grasps, or two loads of one name.
+        InputError: a centre of mass outside the box, a moment of point grasps, or two loads of one name or of
+            different grasps.
     """
     loads = [_payload(key, table, source) for key, table in tables.loads.items()]
     if len(loads) == 1:
@@ -36,6 +37,9 @@ def payloads(tables: ProblemFile, source: ProblemSource) -> tuple[Payload, ...]:
         label = table.name or f"{load.mass:g} kg"
         if any(other.label == label for other in labelled):
             raise InputError(source.path, f"{key}.name", "a name of its own", f"'{label}' twice")
+        if load.grasp is not loads[0].grasp:  # programs and their starts are those of all loads
+            wanted = f"'{loads[0].grasp}', the grasp of the first load"
+            raise InputError(source.path, f"{key}.grasp", wanted, f"'{load.grasp}'")
         labelled.append(replace(load, label=label))
     return tuple(labelled)
 

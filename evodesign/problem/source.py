@@ -22,12 +22,12 @@ import msgspec
 import tomli_w
 
 from evodesign.errors import InputError, nearest_name, shortened
-from evodesign.files import is_there, write_folder
+from evodesign.files import is_there
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.meshes import mesh_texts
 from evodesign.problem.named_files import read_robot, read_text
 from evodesign.problem.shipped import SHIPPED, problem_path
-from evodesign.problem.table import FILL_IN
+from evodesign.problem.table import FILL_IN, struct_in
 from evodesign.records import ProblemSource
 
 GIVEN = "the problem given"
@@ -98,27 +98,6 @@ def _named(folder: Path, name: str) -> Path:
     path = folder / name
     shipped = SHIPPED / name
     return shipped if is_there(shipped) and not is_there(path) else path
-
-
-def copy_source(source: ProblemSource, folder: Path) -> tuple[Path, ...]:
-    """Write a problem and the files that it names into a new folder.
-
-    Returns:
-        The files, that of the problem first; its keys name the others where they are now.
-    Raises:
-        InputError: the folder cannot be made, or is there already.
-    """
-    text, files = source.text, dict[str, str]()
-    for name, content in source.files.items():
-        inside = Path(*(part for part in Path(name).parts if part not in ("..", Path(name).anchor)))
-        files[inside.as_posix()] = content
-        text = text.replace(f'"{name}"', f'"{inside.as_posix()}"')
-    files = {Path(source.path).name: text, **files}
-    try:
-        write_folder(folder, {name: content.encode() for name, content in files.items()}, new=True)
-    except OSError as error:
-        raise InputError("--to", "", "a new folder", f"'{folder}' ({error.strerror})") from error
-    return tuple(folder / name for name in files)
 
 
 RENAMED = {"policy": "allocation", "seeds": "start_portfolio"}
@@ -215,7 +194,7 @@ def _refuse_unknown_keys(raw: Any, kind: Any, source: str, prefix: str) -> None:
         for key, value in raw.items():
             _refuse_unknown_keys(value, get_args(kind)[1], source, f"{prefix}.{key}")
         return
-    struct = _struct_in(kind)
+    struct = struct_in(kind)
     if struct is None:
         return
     fields = _fields(struct)
@@ -232,13 +211,6 @@ def _refuse_unknown_keys(raw: Any, kind: Any, source: str, prefix: str) -> None:
 def _fields(table: type[msgspec.Struct]) -> Mapping[str, Any]:
     """The types of a table's values by their keys."""
     return {field.encode_name: field.type for field in msgspec.structs.fields(table)}
-
-
-def _struct_in(kind: Any) -> type[msgspec.Struct] | None:
-    """The table type inside an annotation such as `X | None` or `tuple[X, ...]`."""
-    if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
-        return kind
-    return next((found for part in get_args(kind) if (found := _struct_in(part))), None)
 
 
 def _leaves(raw: Any, path: str) -> Iterator[tuple[str, Any]]:
@@ -275,7 +247,7 @@ def _words_at(table: type[msgspec.Struct], key: str) -> list[str]:
     """The words that may stand at a key; none where any may."""
     kind: Any = table
     for name in re.findall(r"[^.\[\]]+(?![^\[]*\])", key):
-        struct = _struct_in(kind)
+        struct = struct_in(kind)
         if struct is None or name not in _fields(struct):
             return []
         kind = _fields(struct)[name]

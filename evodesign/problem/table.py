@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any, get_args
 
 import msgspec
 from msgspec import Meta
@@ -19,3 +19,10 @@ Name = Annotated[str, Meta(min_length=1)]
 
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Base of all tables."""
+
+
+def struct_in(kind: Any) -> type[msgspec.Struct] | None:
+    """The table type inside an annotation such as `X | None` or `tuple[X, ...]`."""
+    if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
+        return kind
+    return next((found for part in get_args(kind) if (found := struct_in(part))), None)

@@ -16,7 +16,9 @@ from mcap.reader import make_reader
 import evodesign
 from evodesign.errors import InputError, Interrupted, RunError
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.problem.source import copy_source, read_source
+from evodesign.problem.copied import copy_source
+from evodesign.problem.schema import SCHEMA_FILE
+from evodesign.problem.source import read_source
 from evodesign.records import Generation
 from evodesign.runlog.directory import segments
 
@@ -233,7 +235,8 @@ def test_shipped_problems_are_known_by_name_and_can_be_copied(repository: Path, 
         copied = copy_source(read_source(name), tmp_path / name)
         copy, shipped = evodesign.open_problem(copied[0]), evodesign.open_problem(name)
         assert (copy.parameters, copy.tasks) == (shipped.parameters, shipped.tasks)
-        assert {tmp_path / name / file for file in copy.source.files} == set(copied[1:])
+        assert {tmp_path / name / file for file in copy.source.files} == set(copied[1:-1])
+        assert copied[-1].name == SCHEMA_FILE
 
 
 def test_problems_are_listed_on_the_command_line() -> None:

@@ -100,6 +100,12 @@ def crowd(percentiles: str, sex: str = "both") -> str:
             ["robot.torque_limits_n_m", "did you mean 'l_knee'?"],
         ),
         (PROBLEM, '"surrogate"', '"surogate"', ["algorithm", "did you mean 'surrogate'?"]),
+        (
+            PROBLEM,
+            "[payload]",
+            '[[payload]]\nsize_m = [0.4, 0.5, 0.3]\nmass_kg = 9.0\ngrasp = "rigid"\n[[payload]]',
+            ["payload[1].grasp", "'rigid', the grasp of the first load", "found 'point'"],
+        ),
         ("../populations/icub.toml", "shank = 1.6", "shank = 9.6", ["icub.toml", "long_legs", "9.6"]),
         ("../populations/icub.toml", "shank = 1.6", "shnk = 1.6", ["icub.toml", "did you mean 'shank'?"]),
         (ROBOT, "<robot", "robot", ["icub_shapes.urdf", "XML"]),

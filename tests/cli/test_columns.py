@@ -173,6 +173,7 @@ LINES: dict[str, tuple[tuple[object, ...], ...]] = {
         ("check", "problems/three_people_three_loads.toml"),
     ),
     "problems": (("problems",), ("problems", "point-grasp", "--to", "own")),
+    "schema": (("schema", "--to", "schema.json"),),
     "init": (("init", "problems/robots/icub_shapes.urdf", "--to", "guessed.toml"),),
     "starts": (("starts", "small.toml"),),
     "validate": (("validate", "stoop.csv", "--stature", 1.73, "--mass", 81.68, "--sex", "male"),),

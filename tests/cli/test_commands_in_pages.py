@@ -7,6 +7,7 @@ import shlex
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 import typer
@@ -17,7 +18,11 @@ from tests.cli.test_columns import LINES
 REPOSITORY = Path(__file__).parents[2]
 PAGES = sorted(
     path
-    for path in (*REPOSITORY.glob("*.md"), *REPOSITORY.glob("docs/*.md"), *REPOSITORY.glob("examples/*.md"))
+    for path in (
+        *REPOSITORY.glob("*.md"),
+        *REPOSITORY.glob("docs/**/*.md"),
+        *REPOSITORY.glob("examples/*.md"),
+    )
     if path.name != "CHANGELOG.md"  # which tells of what there was, too
 )
 FENCE = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -47,6 +52,8 @@ NOT_RUN = {
     "python -m benchmarks": "measures for minutes or hours; its figures are in docs/benchmarks.md",
     "python -m docs.write_gallery": "searches for a quarter of an hour",
     "python -m docs.write_actuators": "writes the tables that tests/docs/test_actuators_tables.py compares",
+    "python -m docs.write_problem_file": "writes tables that tests/docs/test_quantities_table.py compares",
+    "python -m docs.write_commands": "writes the tables that tests/cli/test_main.py compares",
     "python -m docs.write_floors": "writes the picture that tests/docs/test_layout.py compares",
     "python -m docs.write_trust": "writes the tables that tests/cli/test_validate.py compares",
     "python -m tests.docs.notebooks": "stores what tests/docs/test_notebooks.py compares",
@@ -57,6 +64,12 @@ NOT_RUN = {
     "evodesign reproduce": "takes minutes; tests/cli/test_reproduce.py runs it with small budgets",
 }
 """Commands that no test runs as they stand, and why; a module's name stands for all in it."""
+
+
+@cache
+def known_commands() -> dict[str, Any]:
+    """The commands by name, as click has them."""
+    return dict(typer.main.get_command(app).commands)  # type: ignore[attr-defined]
 
 
 def commands(page: Path) -> Iterator[tuple[str, str]]:
@@ -87,7 +100,7 @@ def in_blocks(text: str) -> Iterator[tuple[str, str]]:
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_commands_and_their_options_exist(page: Path) -> None:
-    known = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+    known = known_commands()
     for name, rest in commands(page):
         assert name in known, f"evodesign {name}"
         options = {option for each in known[name].params for option in (*each.opts, *each.secondary_opts)}
@@ -111,7 +124,7 @@ def whole_lines(page: Path) -> Iterator[tuple[str, list[str]]]:
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_the_command_line_understands_what_can_be_typed(page: Path) -> None:
-    known = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+    known = known_commands()
     for name, arguments in whole_lines(page):
         known[name].make_context(name, arguments)
 
@@ -123,15 +136,21 @@ def test_lines_that_can_be_typed_are_found() -> None:
 
 
 @cache
+def modules_of_tests() -> list[tuple[str, str]]:
+    """The names and texts of test modules, but for this one."""
+    modules = (REPOSITORY / "tests").rglob("*.py")
+    return [(each.stem, each.read_text(encoding="utf-8")) for each in modules if each != Path(__file__)]
+
+
+@cache
 def options_in_tests(name: str) -> set[str]:
     """The options of a command that test modules about it give, as words or as arguments of its function."""
     found: set[str] = set()
-    for module in (REPOSITORY / "tests").rglob("*.py"):
-        text = module.read_text(encoding="utf-8")
-        about = re.search(rf'"{name}"|\bimport .*\b{name}\b', text) or name in module.stem.split("_")
-        if not about or module.name == Path(__file__).name:
+    for module, text in modules_of_tests():
+        if name not in text and name not in module:
             continue
-        for each in typer.main.get_command(app).commands[name].params:  # type: ignore[attr-defined]
+        about = re.search(rf'"{name}"|\bimport .*\b{name}\b', text) or name in module.split("_")
+        for each in known_commands()[name].params if about else ():
             given = rf"\b{each.name}=|" + "|".join(rf"(?<![\w-]){option}\b" for option in each.opts)
             found |= set(each.opts) if re.search(given, text) else set()
     return found

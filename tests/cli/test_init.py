@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 import trimesh
+from jsonschema import Draft202012Validator
 
 from evodesign.cli.main import main
 from evodesign.tree.urdf_write import urdf_text
@@ -86,6 +87,9 @@ def test_a_newcomers_bundled_robot_is_guessed_and_checked(
     assert run("init", bundled, "--to", file) == 0
     assert file.read_text().endswith("\n")
     assert "FILL IN" not in file.read_text()
+    assert file.read_text().startswith("#:schema ./evodesign.schema.json\n")
+    schema = json.loads((tmp_path / "evodesign.schema.json").read_text())
+    assert [*Draft202012Validator(schema).iter_errors(tomllib.loads(file.read_text()))] == []
     capsys.readouterr()
     assert run("check", file, "--json") == 0
     shown = capsys.readouterr()

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import evodesign
+from docs.write_commands import PAGE, page
 from evodesign.cli.main import COMMANDS, app, main
 from tests.cli.here import evodesign as evodesign_here
 
@@ -31,10 +32,14 @@ def test_alone_it_shows_its_help() -> None:
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_the_readme_names_every_command(command: str, repository: Path) -> None:
-    text = (repository / "README.md").read_text(encoding="utf-8")
-    (commands,) = re.findall(r"## Using it\n\n```\n(.*?)```", text, re.DOTALL)
+def test_the_synopsis_names_every_command(command: str, repository: Path) -> None:
+    text = (repository / "docs" / "commands.md").read_text(encoding="utf-8")
+    (commands,) = re.findall(r"## Synopsis\n\n```\n(.*?)```", text, re.DOTALL)
     assert re.search(rf"\b{command}\b", commands)
+
+
+def test_the_stored_options_are_those_of_the_command_line() -> None:
+    assert PAGE.read_text(encoding="utf-8") == page(), "python -m docs.write_commands writes them"
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

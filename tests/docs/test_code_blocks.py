@@ -39,13 +39,20 @@ def blocks(page: Path) -> list[str]:
 
 PAGES = [
     page
-    for page in sorted((*REPOSITORY.glob("*.md"), *REPOSITORY.glob("docs/*.md")))
+    for page in sorted((*REPOSITORY.glob("*.md"), *REPOSITORY.glob("docs/**/*.md")))
     if blocks(page) and page.name != GENERATED
 ]
 
 
 def test_the_pages_with_code_are_known() -> None:
-    assert [page.name for page in PAGES] == ["README.md", "distributed.md", "hardware.md", "python.md"]
+    recipes = ["export.md", "own_objective.md", "pandas.md"]
+    assert [page.name for page in PAGES] == [
+        "README.md",
+        "distributed.md",
+        "hardware.md",
+        "python.md",
+        *recipes,
+    ]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

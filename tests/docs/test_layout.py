@@ -1,4 +1,4 @@
-"""The README's table of the packages and the picture of docs/architecture.md against the import contract."""
+"""The table of the packages and the picture of docs/architecture.md against the import contract."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from pathlib import Path
 from docs.write_floors import PICTURE, floors, picture
 
 
-def test_the_readme_lists_every_package_in_the_order_of_its_floor(repository: Path) -> None:
+def test_the_table_lists_every_package_in_the_order_of_its_floor(repository: Path) -> None:
     packages = [name for floor in floors() for name in floor]
-    rows = re.findall(r"(?m)^\| (`evodesign/[^|]*)\|", (repository / "README.md").read_text())
+    text = (repository / "docs" / "architecture.md").read_text(encoding="utf-8")
+    rows = re.findall(r"(?m)^\| (`evodesign/[^|]*)\|", text)
     names = [name for row in rows for name in re.findall("`(.*?)`", row)]
     listed = [re.sub(r"^evodesign/|/$|\.py$", "", name) for name in names]
     assert listed == [name for name in packages if name != "__main__"]

@@ -1,4 +1,4 @@
-"""The README lists every quantity that can be an objective or a constraint, as the code has it."""
+"""docs/problem_file.md lists every quantity that can be an objective or a constraint, as the code has it."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from docs.write_problem_file import PAGE, page
 from evodesign.problem.constraints import constraint_key
 from evodesign.quantities.design_result import WORST
 from evodesign.quantities.objectives import QUANTITIES, objective_kind, objective_kinds
@@ -15,11 +16,15 @@ from evodesign.records import Sense
 @pytest.fixture(scope="module")
 def rows(repository: Path) -> dict[str, list[str]]:
     """The table's cells after the name, by name."""
-    text = (repository / "README.md").read_text(encoding="utf-8")
-    section = text.split("### Quantities")[1].split("\n#")[0]
+    text = (repository / "docs" / "problem_file.md").read_text(encoding="utf-8")
+    section = text.split("## Quantities")[1].split("\n#")[0]
     lines = [line for line in section.splitlines() if line.startswith("| `")]
     cells = [[cell.strip(" `") for cell in line.strip("|").split("|")] for line in lines]
     return {name: rest for name, *rest in cells}
+
+
+def test_the_stored_page_is_what_the_schema_says() -> None:
+    assert PAGE.read_text(encoding="utf-8") == page(), "python -m docs.write_problem_file writes it"
 
 
 def test_every_quantity_has_a_row_and_every_row_a_quantity(rows: dict[str, list[str]]) -> None:

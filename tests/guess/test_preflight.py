@@ -13,6 +13,7 @@ import pytest
 from evodesign.body.placement import Placement
 from evodesign.guess.preflight import preflight
 from evodesign.guess.problem_text import guessed_problem
+from evodesign.hardware.catalogue import catalogue
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.records import ProblemSource
 from evodesign.tree.frames import parent_from_child
@@ -89,6 +90,16 @@ def test_a_guessed_problem_passes_and_says_what_was_found() -> None:
         r"from 0\.\d\d to 1\.\d\d m; a posture at 1\.05 m is solved, \[collisions\] aside",
         found["holds the load"].found,
     )
+
+
+def test_a_parameter_that_chooses_among_models_changes_the_mass_by_that_of_the_next_one() -> None:
+    """The unscaled robot has the stronger one."""
+    knees, models = '["left_knee", "right_knee"]', '["X6-60", "X8-120"]'
+    table = f'[[design.actuator]]\nname = "knees"\njoints = {knees}\nmodels = {models}\n'
+    problem = problem_of(humanoid(Build()), lambda text: f"{text}\n{table}")
+    found = {finding.item: finding.found for finding in preflight(problem) if "actuator" in finding.item}
+    less = 2.0 * (catalogue()["X6-60"].mass_kg - catalogue()["X8-120"].mass_kg)
+    assert found == {"actuator.knees X8-120 to X6-60": f"{less:+.2g} kg"}
 
 
 def test_heights_out_of_reach_are_named_beside_those_within() -> None:
