@@ -84,8 +84,8 @@ MEANINGS: Mapping[str, Meaning] = {
         "people with all loads ([paper](paper.md#the-sequel))"
     ),
     "paper2025_cost": Meaning(
-        "the cost of the third paper: the person's squared torque norm and a millionth of the robot's, summed "
-        "over the heights ([paper](paper.md#the-2025-robots))"
+        "the cost of the third paper: the person's squared torque norm and a millionth of the robot's, "
+        "summed over the heights ([paper](paper.md#the-2025-robots))"
     ),
 }
 """Of every quantity but `worst_` ones; links are of docs/."""
