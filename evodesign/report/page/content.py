@@ -285,7 +285,7 @@ class DesignContent(Part, frozen=True):
     """A design that can be opened.
 
     Attributes:
-        cases: how each ended.
+        cases: how each ended, without the disturbances, which the page never shows one by one.
         people: mean and standard deviation over the problem's people, by quantity.
         postures: one per solved case; empty when the log or the page's limit leaves them out.
         clearances: as many as postures; none where a posture is of a stranger to the run's problem.

@@ -267,7 +267,7 @@ def _design(
     detail: Detail | None,
     recorded: Collection[int],
 ) -> DesignContent:
-    cases = evaluation.assessment.cases
+    cases = tuple(replace(case, disturbed={}) for case in evaluation.assessment.cases)
     if known is None or detail is None:
         return rounded(DesignContent(cases=cases))
     problem = known.problem

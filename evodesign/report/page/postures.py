@@ -40,7 +40,7 @@ def details_shown(
     first = list(dict.fromkeys(mark.number for mark in marked if mark.number in known))
     of_front = [each.number for each in shown if each.number in front and each.number not in first]
     others = [number for number in of_front if number in known]
-    kept = subsample(others, max(0, _most_designs(details) - len(first)))
+    kept = subsample(others, max(0, most_designs(details) - len(first)))
     notes = []
     if len(kept) < len(others):
         notes.append(
@@ -55,7 +55,7 @@ def details_shown(
     return {number: known[number] for number in (*first, *kept)}, tuple(notes)
 
 
-def _most_designs(details: Sequence[Detail]) -> int:
+def most_designs(details: Sequence[Detail]) -> int:
     """How many designs have their postures in the page."""
     numbers = max((_numbers(shown_cases(detail.cases)) for detail in details), default=0)
     return MOST_NUMBERS // max(numbers, 1)

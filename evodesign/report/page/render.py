@@ -69,8 +69,8 @@ SCRIPTS = (
 
 STEPS: Mapping[str, tuple[int, float]] = {
     "postures": (4_000, 1e6),
-    "static_torques": (4_000, 1e6),
-    "slices": (4_000, math.inf),
+    "static_torques": (2_000, 1e6),
+    "slices": (2_000, math.inf),
     "hardware": (4_000, math.inf),
     "links": (40_000, math.inf),
     "joints": (40_000, math.inf),
