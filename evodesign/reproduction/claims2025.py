@@ -22,7 +22,7 @@ BY_COST, BY_FRONT = "by_cost", "by_front"
 LOWER = 0.02
 """Share by which a figure must fall to count as lower.
 
-At 0.8 m least torque has two optima for the person, of 0.7 and 1.7 N m, which differ by 1.3 % of the cost.
+At 0.8 m least torque has optima of 0.7 to 1.7 N m for the person, which differ by 1.3 % of the cost.
 """
 
 

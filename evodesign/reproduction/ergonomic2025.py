@@ -1,7 +1,8 @@
 """The robots of 2025 beside the iCub, with the paper's person and measured ones, and two searches of ours.
 
 The published robots differ from ours in where hips and chest are (`populations/sartore2025_robots.toml`), so
-the problem gets these two offsets as parameters beside its lengths; in robots of the searches they are zero.
+the problem gets these two offsets and the pelvis' length as parameters, which robots of the searches leave as
+they are.
 One search minimises the paper's cost. The other has the three objectives of this project; shown is its design
 of least robot torque among those that reach as high as B and beside which the person needs no more torque.
 
@@ -65,18 +66,22 @@ JOINTS = [
 ]
 """Where the published robots' joints differ from ours, up or down by at most 30 mm."""
 
+PELVIS = {"name": "pelvis", "links": ["root_link"], "lower": 0.5, "upper": 1.8, "keep_mass": True}
+"""Their eighth length."""
+
 AS_PUBLISHED, AS_MEASURED = "least torque", "measured posture"
 """The paper's person as the paper has it, and standing as people do who were measured."""
 
 
-def with_joints(problem: DesignProblem, tables: Mapping[str, Any] | None = None) -> DesignProblem:
-    """The problem with the offsets of the published robots as parameters, and with other tables changed."""
+def as_published(problem: DesignProblem, tables: Mapping[str, Any] | None = None) -> DesignProblem:
+    """The problem with all parameters of the published robots, and with other tables changed."""
     offsets = [{**joint, "offset_m": [-FARTHEST, FARTHEST], "along": UP} for joint in JOINTS]
-    return changed_problem(problem, {"design": {"joint": offsets}, **(tables or {})})
+    lengths = [*tomllib.loads(problem.source.text)["design"]["length"], PELVIS]
+    return changed_problem(problem, {"design": {"length": lengths, "joint": offsets}, **(tables or {})})
 
 
 def published_robots(problem: DesignProblem) -> dict[str, tuple[float, ...]]:
-    """Parameter values of the iCub and of robots A, B and C, of a problem `with_joints`."""
+    """Parameter values of the iCub and of robots A, B and C, of the problem `as_published`."""
     text = read_text(ROBOTS, str(ROBOTS), "")
     return read_designs(text, str(ROBOTS), problem.space, problem.scene.designed_tree)
 
@@ -95,14 +100,14 @@ def ergonomic_reproduction(experiment: Experiment) -> ErgonomicReproduction:
     for parameter in problem.space.parameters:
         if parameter.kind is not ParameterKind.LENGTH:
             raise InputError(problem.source.path, "design", "lengths alone", parameter.name)
-    offered = with_joints(problem)
+    offered = as_published(problem)
     designs = published_robots(offered)
     results = experiment.solved(offered, designs, "the robots of 2025")
     optimised = {name: results[name] for name in OPTIMISED}
     runs, found_by = _searches(experiment, optimised)
-    still = [0.0] * (len(offered.space.parameters) - len(problem.space.parameters))
+    unscaled = offered.space.named(offered.space.unscaled(offered.scene.designed_tree))
     ours = {
-        name: (*each.assessment.design.values(), *still)
+        name: tuple({**unscaled, **each.assessment.design}.values())
         for name, each in found_by.items()
         if each is not None
     }
@@ -163,8 +168,8 @@ def _beside_others(
     Returns:
         Of each person a label, the name in the problem's cases, and the results of all robots.
     """
-    standing = with_joints(experiment.problem, MEASURED)
-    people = with_joints(experiment.problem, {"human": tomllib.loads(read_source(DEFAULT).text)["human"]})
+    standing = as_published(experiment.problem, MEASURED)
+    people = as_published(experiment.problem, {"human": tomllib.loads(read_source(DEFAULT).text)["human"]})
     beside = experiment.solved(standing, designs, "beside a measured posture")
     found: list[tuple[str, str | None, dict[str, DesignResult]]] = [(AS_MEASURED, None, beside)]
     beside = experiment.solved(people, designs, f"beside the people of {DEFAULT}")

@@ -13,7 +13,7 @@ from scipy.optimize import minimize
 from evodesign.errors import InputError
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source
-from evodesign.reproduction.ergonomic2025 import published_robots, with_joints
+from evodesign.reproduction.ergonomic2025 import as_published, published_robots
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_write import urdf_text
 
@@ -37,7 +37,7 @@ shoulder pitch, elbow, wrist pitch, hip yaw, ankle pitch. Torso yaw is at 0.0644
 
 @pytest.fixture(scope="module")
 def of_2025(repository: Path) -> DesignProblem:
-    return with_joints(build_problem(read_source(repository / "problems" / "sartore2025.toml")))
+    return as_published(build_problem(read_source(repository / "problems" / "sartore2025.toml")))
 
 
 def test_the_published_robots_weigh_the_same_and_have_the_joints_of_their_urdfs(
@@ -121,6 +121,6 @@ def test_a_mass_is_kept_only_where_nothing_else_gives_it(repository: Path) -> No
     for table in (density, wall):
         changed = msgspec.structs.replace(source, text=f"{source.text}\n{table}")
         with pytest.raises(
-            InputError, match=r"design.length\[7\].keep_mass: wanted false, as .* gives 'chest'"
+            InputError, match=r"design.length\[6\].keep_mass: wanted false, as .* gives 'chest'"
         ):
             build_problem(changed)
