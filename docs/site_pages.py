@@ -66,8 +66,13 @@ def on_files(files: Files, config: Any) -> Files:
 
 
 def on_page_markdown(markdown: str, page: Any, config: Any, files: Files) -> str:
-    """Turn the links of pages of docs/."""
+    """Turn the links of pages of docs/, and let the site's search find recipes first and changes nowhere."""
+    name = page.file.src_uri
+    if name == "changelog.md":
+        page.meta["search"] = {"exclude": True}
+    elif name.startswith("recipes/"):
+        page.meta["search"] = {"boost": 4}
     if page.file.generated_by:
         return markdown
-    place = Path(page.file.src_uri).parent.as_posix()
+    place = Path(name).parent.as_posix()
     return in_site(markdown, DOCS / place, set(), place)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import re
+import sys
 import tomllib
+import types
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -18,7 +20,8 @@ from evodesign.errors import InputError
 from evodesign.problem.build import build_problem
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.schema import SCHEMA_FILE, keys, problem_schema, tables
-from evodesign.problem.source import decode_toml, read_source
+from evodesign.problem.source import decode_toml, read_source, source_of
+from evodesign.quantities.design_result import CaseQuantity
 from evodesign.quantities.meanings import MEANINGS
 from evodesign.quantities.objectives import objective_kinds
 from tests.cli.test_bad_input import PROBLEM
@@ -137,7 +140,7 @@ def test_quantities_over_cases_and_of_ones_own_may_be_named(
 
 
 SHOWN = [
-    (page.name, block)
+    (str(page.relative_to(REPOSITORY / "docs")), block)
     for page in sorted((REPOSITORY / "docs").rglob("*.md"))
     if page.name != "trust.md"  # whose table is no problem's
     for block in re.findall(
@@ -146,15 +149,38 @@ SHOWN = [
 ]
 
 
+def with_tables(block: str) -> dict[str, Any]:
+    """The tables of point_grasp.toml with those of a page in their place; people are others."""
+    whole = tomllib.loads((REPOSITORY / "problems" / PROBLEM).read_text(encoding="utf-8"))
+    for name, table in tomllib.loads(block).items():
+        old = whole.get(name)
+        added = isinstance(old, dict) and isinstance(table, dict) and name != "human"
+        whole[name] = {**old, **table} if added else table
+    return whole
+
+
 @pytest.mark.parametrize(("page", "block"), SHOWN, ids=[page for page, _ in SHOWN])
 def test_tables_that_pages_show_are_valid(page: str, block: str, validator: Draft202012Validator) -> None:
-    """Each in a problem whose other tables are those of point_grasp.toml."""
-    whole = tomllib.loads((REPOSITORY / "problems" / PROBLEM).read_text(encoding="utf-8"))
-    shown = tomllib.loads(block)
-    for name, table in shown.items():
-        old = whole.get(name)
-        whole[name] = {**old, **table} if isinstance(old, dict) and isinstance(table, dict) else table
-    assert places(validator, whole) == [], page
+    assert places(validator, with_tables(block)) == [], page
+
+
+RECIPES = [(page, block) for page, block in SHOWN if page.startswith("recipes/")]
+
+
+@pytest.mark.parametrize(("page", "block"), RECIPES, ids=[page for page, _ in RECIPES])
+def test_problems_of_recipes_are_built(page: str, block: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the copy that recipes begin with, whose walls have taken the place of densities in hardware.md."""
+    tables = with_tables(block)
+    del tables["search"]["reference"], tables["search"]["start"]
+    if page == "recipes/hardware.md":
+        tables["design"]["density"] = [
+            each for each in tables["design"]["density"] if "arm" not in each["name"]
+        ]
+    module = types.ModuleType("my_objectives")
+    monkeypatch.setitem(sys.modules, "my_objectives", module)
+    monkeypatch.setenv("EVODESIGN_MODULES", "my_objectives")
+    module.foot_force = CaseQuantity("N", lambda scene, postures: 0.0)  # type: ignore[attr-defined]
+    assert build_problem(source_of(tables, REPOSITORY / "problems")).objectives
 
 
 def test_every_key_says_what_it_does_and_every_text_has_a_key() -> None:
