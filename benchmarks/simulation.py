@@ -28,7 +28,7 @@ from evodesign.evaluation.simulations import HOLD_SECONDS, simulated_holds, simu
 from evodesign.records import Lift
 from evodesign.report.opened_design import open_design
 from evodesign.runlog.run import read_run
-from evodesign.simulation.feedback import Feedback
+from evodesign.control.feedback import Feedback
 
 FEEDBACK = Feedback()
 

@@ -58,7 +58,7 @@ def simulate(
         simulated_holds,
         simulated_lifts,
     )
-    from evodesign.simulation.feedback import Feedback
+    from evodesign.control.feedback import Feedback
 
     if (from_m is None) != (to_m is None):
         raise InputError("simulate", "from_m", "both from_m and to_m, or neither", "one of them")

@@ -79,7 +79,7 @@ def simulate(
     )
     from evodesign.report.opened_design import open_design
     from evodesign.runlog.run import read_run
-    from evodesign.simulation.feedback import Feedback
+    from evodesign.control.feedback import Feedback
     from evodesign.tasks.lift import Lift, profile_named
 
     feedback, logged = Feedback(frequency, damping), read_run(run)

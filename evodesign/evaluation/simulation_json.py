@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from evodesign.evaluation.simulations import SimulatedCase
-from evodesign.simulation.feedback import Feedback
+from evodesign.control.feedback import Feedback
 from evodesign.simulation.outcome import AgentOutcome
 
 

@@ -25,7 +25,7 @@ from evodesign.report.figures.design import write_design_figures
 from evodesign.report.page.bodies import bodies
 from evodesign.report.replay.layout import layout_text
 from evodesign.report.scene_models import SceneSet
-from evodesign.simulation.feedback import Feedback
+from evodesign.control.feedback import Feedback
 
 G = 9.81
 

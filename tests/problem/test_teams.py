@@ -41,7 +41,7 @@ from evodesign.report.page.bodies import bodies
 from evodesign.report.replay.layout import layout_text
 from evodesign.report.replay.messages import messages
 from evodesign.report.scene_models import SceneSet
-from evodesign.simulation.feedback import Feedback
+from evodesign.control.feedback import Feedback
 from evodesign.tasks import Lift
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_write import urdf_text
