@@ -10,7 +10,9 @@ joints and their speeds as limits of their accelerations,
 
     a >= -w^2 (q - q_min) - 2 z w v,     a >= -2 z w (v + v_max),     and likewise above,
 
-so that a joint nears the end of its range like a critically damped oscillator. Within these, least squares
+so that a joint nears the end of its range like a critically damped oscillator; where no accelerations keep
+all of these, ranges and speeds give way as little as can be. A sole that moves or tilts is brought to rest flat on
+the floor. Within these, least squares
 of what is wanted, in the masses and inertias that it moves:
 
     balance   of the centre of mass c, with capture point c + v / w0 and w0 = sqrt(g / height):
@@ -30,17 +32,19 @@ Source: Wensing and Orin 2013 (task-space control by quadratic programs); Englsb
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
 import scipy
 from numpy.typing import NDArray
+from scipy.linalg import lapack
 
 from evodesign.control.feedback import Feedback
 from evodesign.control.limits import JointLimits
-from evodesign.control.moving_body import BodyMotion, MovingBody
+from evodesign.control.moving_body import BodyMotion, FrameMotion, MovingBody
 from evodesign.control.quadratic import least_squares
 from evodesign.control.target import Course, Target
 from evodesign.mechanics.balance import GRAVITY
@@ -51,6 +55,12 @@ Array = NDArray[np.float64]
 
 LEVEL = 0.01
 """By how much less the next level of importance counts."""
+
+SOLES_FIRST = 3.0
+"""Soles come to rest as much faster than all else: an inner loop is three times as fast as the outer one."""
+
+LOW = 0.01
+"""Height of the centre of mass above the soles [m] that is the least of those who stand or fall."""
 
 DEPENDENT = 1e-8
 """Rows of strict equations that are dependent to this share are one."""
@@ -65,6 +75,7 @@ class Command:
         acceleration: that it expects, shape (v,).
         feet: wrenches on the feet that it expects, in their sole frames, shape (feet, 6).
         hands: wrenches on the hands that it expects, in world axes, shape (hands, 6).
+        capture: horizontal distance of the capture point from the planned one [m], shape (2,).
         reason: why there is no command; empty where there is one, else all above are zero.
     """
 
@@ -72,6 +83,7 @@ class Command:
     acceleration: Array
     feet: Array
     hands: Array
+    capture: Array
     reason: str = ""
 
 
@@ -102,17 +114,22 @@ class WholeBodyController:
         share: HandShare | None,
         feedback: Feedback,
     ) -> None:
-        self.body, self._limits, self._share, self._gains = body, limits, share, feedback
+        self.body, self.limits, self._share, self._gains = body, limits, share, feedback
+        self._soles = replace(feedback, frequency=SOLES_FIRST * feedback.frequency)
         units = [*np.eye(6), np.zeros(6)]
-        cones = []
-        for foot in body.agent.feet:
-            margins = np.array([foot_margins(unit, foot.sole, ground) for unit in units])
-            cones.append((margins[:-1] - margins[-1]).T)
-            least = margins[-1]
-        self._cones = scipy.linalg.block_diag(*cones)
-        self._least = np.tile(-least, len(cones))
-        self._limited = np.isfinite(limits.torque)
-        self._bounded = np.isfinite(limits.lower) | np.isfinite(limits.upper) | np.isfinite(limits.speed)
+        margins = [np.array([foot_margins(e, foot.sole, ground) for e in units]) for foot in body.agent.feet]
+        cones = scipy.linalg.block_diag(*((each[:-1] - each[-1]).T for each in margins))
+        self._limited = np.flatnonzero(np.isfinite(limits.torque))
+        self._bounded = np.flatnonzero(
+            np.isfinite(limits.lower) | np.isfinite(limits.upper) | np.isfinite(limits.speed)
+        )
+        self._least = -np.concatenate([each[-1] for each in margins]) / body.total
+        self._count, self._wrenches = body.size, cones.shape[1]
+        self._bounds = np.zeros((len(cones) + len(self._limited) + len(self._bounded), body.size + 6 * len(margins)))
+        self._bounds[: len(cones), body.size :] = cones
+        ends = range(len(self._bounds) - len(self._bounded), len(self._bounds))
+        self._bounds[ends, body.rates[self._bounded]] = 1.0
+        self._torque_rows = slice(len(cones), len(cones) + len(self._limited))
 
     def command(self, q: Array, v: Array, target: Target) -> Command:
         """The torques at a state.
@@ -122,35 +139,43 @@ class WholeBodyController:
             v: its velocities.
             target: at this moment.
         """
-        body, count = self.body.at(q, v), len(v)
+        body, count, rates = self.body.at(q, v), self._count, self.body.rates
         hands, added = self._hands(body, target)
-        pulled = sum(
-            (hand.jacobian.T @ wrench for hand, wrench in zip(body.hands, hands, strict=True)),
-            np.zeros(count),
-        )
-        soles = np.vstack([foot.jacobian for foot in body.feet])
-        mass = self.body.total
-        strict = np.block(
-            [
-                [body.mass[:ROOT] / mass, -soles[:, :ROOT].T],
-                [soles, np.zeros((len(soles), len(soles)))],
-            ]
-        )
-        still = np.concatenate([-foot.drift - self._gains.rate * foot.velocity for foot in body.feet])
-        sought = np.concatenate([(pulled - body.bias)[:ROOT] / mass, still])
+        capture = _capture(body, target)
+        force = body.bias.copy()
+        for hand, wrench in zip(body.hands, hands, strict=True):
+            force -= hand.jacobian.T @ wrench
+        total = self.body.total
+        motion = np.empty((count, count + self._wrenches))
+        motion[:, :count] = body.mass
+        strict, sought = np.zeros((ROOT + self._wrenches, motion.shape[1])), np.empty(ROOT + self._wrenches)
+        for place, foot in zip(range(0, self._wrenches, 6), body.feet, strict=True):
+            motion[:, count + place : count + place + 6] = -total * foot.jacobian.T
+            strict[ROOT + place : ROOT + place + 6, :count] = foot.jacobian
+            sought[ROOT + place : ROOT + place + 6] = self._flattening(foot) - foot.drift
+        strict[:ROOT], sought[:ROOT] = motion[:ROOT] / total, -force[:ROOT] / total
         origin, free = _solutions(strict, sought)
         rows, wanted = self._wanted(body, q, target, added)
-        moved = np.hstack([body.mass, -mass * soles.T])[self.body.rates]
-        torque_bias = (body.bias - pulled)[self.body.rates]
-        bounds, lower, upper = self._bounds(q, v, moved, torque_bias, count)
-        rows_free, bounds_free, reached = rows @ free, bounds @ free, bounds @ origin
-        found = least_squares(rows_free, wanted - rows @ origin, bounds_free, lower - reached, upper - reached)
+        bounds = self._bounds.copy()
+        bounds[self._torque_rows] = motion[rates[self._limited]]
+        lower, upper = self._ends(q, v, force[rates])
+        reached = bounds @ origin
+        program = rows @ free, wanted - rows @ origin
+        limits = bounds @ free, lower - reached, upper - reached
+        found = least_squares(*program, *limits)
         if found.reason:
-            nothing = np.zeros(len(self.body.rates)), np.zeros(count), np.zeros((len(body.feet), 6))
-            return Command(*nothing, hands, f"no torques keep {self.body.agent.name}'s limits: {found.reason}")
+            found = least_squares(*program, *limits, yielding=len(self._bounded))
+        if found.reason:
+            nothing = np.zeros(len(rates)), np.zeros(count), np.zeros((len(body.feet), 6))
+            return Command(*nothing, hands, capture, f"no torques keep {self.body.agent.name}'s limits: {found.reason}")
         x = origin + free @ found.x
-        feet = (mass * x[count:]).reshape(-1, 6)
-        return Command(moved @ x + torque_bias, x[:count], feet, hands)
+        feet = (total * x[count:]).reshape(-1, 6)
+        return Command(motion[rates] @ x + force[rates], x[:count], feet, hands, capture)
+
+    def _flattening(self, sole: FrameMotion) -> Array:
+        """Acceleration that brings a sole to rest, flat on the floor, in its own axes, shape (6,)."""
+        up = sole.turn[2]
+        return self._soles.acceleration(np.array([*(-sole.place[2] * up), -up[1], up[0], 0.0]), -sole.velocity)
 
     def _hands(self, body: BodyMotion, target: Target) -> tuple[Array, list[Array]]:
         """Wrenches on the hands, and what the feedback adds to each one's planned acceleration."""
@@ -158,32 +183,36 @@ class WholeBodyController:
             return np.zeros((len(body.hands), 6)), []
         masses = np.repeat([self._share.mass, self._share.inertia], 3)
         added = [
-            self._gains.acceleration(_off(course, hand.turn, hand.place), course.velocity - hand.velocity)
+            self._gains.acceleration(_off(course, hand), course.velocity - hand.velocity)
             for hand, course in zip(body.hands, target.hands, strict=True)
         ]
         return target.hand_wrenches - masses * np.array(added).reshape(-1, 6), added
 
     def _wanted(self, body: BodyMotion, q: Array, target: Target, added: list[Array]) -> tuple[Array, Array]:
         """Rows A and numbers b of the least squares over accelerations and wrenches per mass."""
-        parts = list(self._tasks(body, q, target, added))
-        mass, spin = self.body.total, body.spin
-        size = 6 * len(body.feet)
-        of_accelerations = np.vstack([rows for rows, _ in parts])
-        wanted = np.concatenate([numbers for _, numbers in parts])
-        scale = LEVEL**1.5 * np.tile(np.repeat([np.sqrt(mass), mass / np.sqrt(spin)], 3), len(body.feet))
-        rows = scipy.linalg.block_diag(of_accelerations, np.diag(scale))
-        return rows, np.concatenate([wanted, scale * target.feet_wrenches.reshape(size) / mass])
+        rates, count, mass = self.body.rates, self._count, self.body.total
+        tasks = list(self._tasks(body, target, added))
+        size = sum(len(numbers) for _, numbers in tasks)
+        wanted, places = [numbers for _, numbers in tasks], self.body.places
+        rows = np.zeros((size + len(rates) + self._wrenches, count + self._wrenches))
+        np.concatenate([task for task, _ in tasks], out=rows[:size, :count])
+        scale = LEVEL * np.sqrt(body.mass[rates, rates])
+        rows[range(size, size + len(rates)), rates] = scale
+        posture = self._gains.acceleration((target.coordinates - q)[places], (target.velocity - body.velocity)[rates])
+        wanted.append(scale * (target.acceleration[rates] + posture))
+        scale = LEVEL**1.5 * np.tile(np.repeat([mass**0.5, mass / body.spin**0.5], 3), len(body.feet))
+        rows[range(size + len(rates), len(rows)), range(count, count + self._wrenches)] = scale
+        wanted.append(scale * target.feet_wrenches.ravel() / mass)
+        return rows, np.concatenate(wanted)
 
-    def _tasks(
-        self, body: BodyMotion, q: Array, target: Target, added: list[Array]
-    ) -> Iterator[tuple[Array, Array]]:
+    def _tasks(self, body: BodyMotion, target: Target, added: list[Array]) -> Iterator[tuple[Array, Array]]:
+        """Of centre of mass, hands and trunk: rows over accelerations, and numbers."""
         gains, center, share = self._gains, body.center, self._share
-        height = max(center.place[2] - np.mean([foot.place[2] for foot in body.feet]), 1e-2)
-        own = np.sqrt(GRAVITY / height)
+        own = _pendulum(body)
         off, slow = target.center.place - center.place, target.center.velocity - center.velocity
         change = gains.acceleration(off, slow)
         change[:2] = gains.frequency * own * off[:2] + (gains.frequency + own) * slow[:2]
-        weight = np.sqrt(self.body.total)
+        weight = math.sqrt(self.body.total)
         yield weight * center.jacobian, weight * (target.center.acceleration + change - center.drift)
         if share is not None:
             rows = 6 if share.inertia > 0.0 else 3
@@ -191,44 +220,45 @@ class WholeBodyController:
             for hand, course, more in zip(body.hands, target.hands, added, strict=True):
                 wanted = (course.acceleration + more - hand.drift)[:rows]
                 yield scale[:, None] * hand.jacobian[:rows], scale * wanted
-        trunk, course, weight = body.trunk, target.trunk, np.sqrt(LEVEL * body.spin)
-        turned = _off(course, trunk.turn, trunk.place)[3:]
-        turning = gains.acceleration(turned, (course.velocity - trunk.velocity)[3:])
-        turning += (course.acceleration - trunk.drift)[3:]
-        yield weight * trunk.jacobian[3:], weight * turning
-        places, rates = self.body.places, self.body.rates
-        wanted = gains.acceleration((target.coordinates - q)[places], (target.velocity - body.velocity)[rates])
-        scale = LEVEL * np.sqrt(body.mass[rates, rates])
-        posture = np.zeros((len(rates), len(body.velocity)))
-        posture[np.arange(len(rates)), rates] = scale
-        yield posture, scale * (target.acceleration[rates] + wanted)
+        trunk, course, weight = body.trunk, target.trunk, math.sqrt(LEVEL * body.spin)
+        turning = gains.acceleration(_off(course, trunk), course.velocity - trunk.velocity)
+        turning += course.acceleration - trunk.drift
+        yield weight * trunk.jacobian[3:], weight * turning[3:]
 
-    def _bounds(
-        self, q: Array, v: Array, moved: Array, torque_bias: Array, count: int
-    ) -> tuple[Array, Array, Array]:
-        """Rows C with their limits: cones, torques, and accelerations of joints."""
-        limits, rates, mass = self._limits, self.body.rates, self.body.total
-        cones = np.hstack([np.zeros((len(self._cones), count)), self._cones])
-        torque, bias = limits.torque[self._limited], torque_bias[self._limited]
-        least, most = limits.accelerations(q[self.body.places], v[rates], self._gains)
-        bounded = np.flatnonzero(self._bounded)
-        joints = np.zeros((len(bounded), count + self._cones.shape[1]))
-        joints[np.arange(len(bounded)), rates[bounded]] = 1.0
-        rows = np.vstack([cones, moved[self._limited], joints])
-        lower = np.concatenate([self._least / mass, -torque - bias, least[bounded]])
-        upper = np.concatenate([np.full(len(cones), np.inf), torque - bias, most[bounded]])
-        return rows, lower, upper
+    def _ends(self, q: Array, v: Array, bias: Array) -> tuple[Array, Array]:
+        """Lower and upper limits of cones, torques, and accelerations of joints."""
+        limits = self.limits
+        torque, bias = limits.torque[self._limited], bias[self._limited]
+        least, most = limits.accelerations(q[self.body.places], v[self.body.rates], self._gains)
+        lower = np.concatenate([self._least, -torque - bias, least[self._bounded]])
+        upper = np.concatenate([np.full(len(self._least), np.inf), torque - bias, most[self._bounded]])
+        return lower, upper
 
 
-def _off(course: Course, turn: Array, place: Array) -> Array:
+def _pendulum(body: BodyMotion) -> float:
+    """Rate w0 at which the centre of mass falls away from above the feet [1/s]."""
+    height = body.center.place[2] - sum(foot.place[2] for foot in body.feet) / len(body.feet)
+    return math.sqrt(GRAVITY / max(height, LOW))
+
+
+def _capture(body: BodyMotion, target: Target) -> Array:
+    """Horizontal distance of the capture point from the planned one [m], shape (2,)."""
+    off, faster = body.center.place - target.center.place, body.center.velocity - target.center.velocity
+    return np.asarray((off + faster / _pendulum(body))[:2])
+
+
+def _off(course: Course, frame: FrameMotion) -> Array:
     """Place [m] and turn [rad] that are missing to a frame's course, in world axes, shape (6,)."""
-    return np.concatenate([course.place - place, pin.log3(course.turn @ turn.T)])
+    return np.concatenate([course.place - frame.place, pin.log3(course.turn @ frame.turn.T)])
 
 
 def _solutions(rows: Array, numbers: Array) -> tuple[Array, Array]:
-    """One solution of independent equations, and an orthonormal basis of what may be added to it."""
-    q, r, order = scipy.linalg.qr(rows.T, pivoting=True, check_finite=False)
-    sizes = np.abs(np.diagonal(r))
+    """One solution of equations, and an orthonormal basis of what may be added to it, by QR with pivoting."""
+    count, size = rows.shape
+    whole = np.zeros((size, size), order="F")
+    whole[:, :count], order, factors, _, _ = lapack.dgeqp3(rows.T)
+    sizes = np.abs(np.diagonal(whole))[:count]
     rank = int(np.count_nonzero(sizes > DEPENDENT * sizes[0]))
-    part = scipy.linalg.solve_triangular(r[:rank, :rank], numbers[order[:rank]], trans="T", check_finite=False)
-    return q[:, :rank] @ part, q[:, rank:]
+    part = lapack.dtrtrs(whole[:rank, :rank], numbers[order[:rank] - 1], trans=1)[0]
+    basis = lapack.dorgqr(whole, factors, overwrite_a=True)[0]
+    return basis[:, :rank] @ part, basis[:, rank:]

@@ -24,6 +24,9 @@ REASONS = {
 }
 """DAQP's exit flags below zero."""
 
+FOUND = (1, 2)
+"""DAQP's exit flags of a minimum, and of one in which limits gave way."""
+
 ITERATIONS = 1000
 """Of the solver at most; programs of controllers take a few dozen."""
 
@@ -41,7 +44,9 @@ class QuadraticSolution:
     reason: str = ""
 
 
-def least_squares(a: Array, b: Array, c: Array, lower: Array, upper: Array) -> QuadraticSolution:
+def least_squares(
+    a: Array, b: Array, c: Array, lower: Array, upper: Array, yielding: int = 0
+) -> QuadraticSolution:
     """The minimum of |A x - b|^2 within limits.
 
     Args:
@@ -50,22 +55,30 @@ def least_squares(a: Array, b: Array, c: Array, lower: Array, upper: Array) -> Q
         c: shape (m, n).
         lower: shape (m,), -inf for none.
         upper: shape (m,), inf for none.
+        yielding: how many of the last limits give way where they exclude each other or the others, as little
+            as can be.
     """
     if not (np.isfinite(a).all() and np.isfinite(b).all() and np.isfinite(c).all()):
         return QuadraticSolution(np.zeros(a.shape[1]), "its numbers are not finite")
+    sense = np.zeros(len(c), np.int32)
+    sense[len(c) - yielding :] = YIELDS
     x, _, flag, _ = daqp.solve(
         a.T @ a,
         -(a.T @ b),
         c,
         np.minimum(upper, NO_LIMIT),
         np.maximum(lower, -NO_LIMIT),
+        sense,
         iter_limit=ITERATIONS,
         primal_tol=1e-9,
     )
-    if flag != 1:
+    if flag not in FOUND:
         return QuadraticSolution(np.asarray(x), REASONS.get(flag, f"its solver ended with flag {flag}"))
     return QuadraticSolution(np.asarray(x))
 
+
+YIELDS = 8
+"""DAQP's mark of a limit that gives way."""
 
 NO_LIMIT = 1e30
 """What DAQP takes for infinity."""

@@ -1,8 +1,15 @@
 """Robot, person and load in MuJoCo, each agent under a whole-body controller of its own.
 
-Controllers answer at a rate of their own, with torques that last until the next answer; MuJoCo moves on in
-finer steps. A controller knows the state of its own body, as it was some time ago where sensors are late, and
-the plan; of the others it knows nothing but what the load does to its hands.
+Controllers answer at a rate of their own; MuJoCo moves on in finer steps. Between two answers motors follow
+
+    tau = tau* + d (v* + a* t - v),        d = 2 z w I
+
+with the torques tau* and accelerations a* of the answer, the speeds v* that it was given, and I of each joint
+as in `feedback`: feet, which are light, would flutter under torques alone. d is taken at the end of a step,
+by h d in the joints' inertia (`rollout`). A controller knows the state of its own body, as it was some time
+ago where sensors are late, and the plan; of the others it knows nothing.
+
+Source: Tan, Liu and Turk 2011 (damping at the end of a step).
 """
 
 from __future__ import annotations
@@ -19,53 +26,77 @@ from evodesign.control.feedback import Feedback
 from evodesign.control.limits import JointLimits
 from evodesign.control.moving_body import MovingBody
 from evodesign.control.target import Target
-from evodesign.mechanics.payload import Grasp, Payload
+from evodesign.mechanics.payload import Grasp
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture, Array
-from evodesign.simulation.model import SimulatedScene, simulated_scene
+from evodesign.simulation.feedback import joint_inertias
+from evodesign.simulation.model import simulated_scene
 from evodesign.tree.model import Tree
 
-CONTROL_STEP = 4e-3
-"""Time between two answers of a controller [s]."""
-
-SUBSTEPS = 4
-"""Steps of MuJoCo's integration between two answers."""
-
 Targets = Callable[[int], Mapping[str, Target]]
-"""From the number of a controller's answer to the targets of all agents, by name."""
+"""From the number of an answer to the targets of all agents, by name."""
 
-
-def hand_share(payload: Payload, scene: Scene) -> HandShare:
-    """An equal part of the load for every hand of the scene."""
-    hands = sum(len(agent.hands) for agent in scene.agents)
-    spin = float(np.trace(np.array(payload.inertia.about_center))) / 3.0
-    rigid = payload.grasp is Grasp.RIGID
-    return HandShare(payload.mass / hands, spin / hands if rigid else 0.0)
+State = tuple[Array, Array]
+"""Pinocchio's configuration and velocities."""
 
 
 @dataclass(frozen=True, slots=True)
+class Timing:
+    """When controllers answer and what they see.
+
+    Args:
+        step: between two answers [s].
+        substeps: of the integration between two answers.
+        delay: answers after which a state is seen.
+    """
+
+    step: float = 4e-3
+    substeps: int = 8
+    delay: int = 0
+
+
+def hand_share(scene: Scene) -> HandShare | None:
+    """An equal part of the load for every hand of the scene; None without hands."""
+    hands = sum(len(agent.hands) for agent in scene.agents)
+    if not hands:
+        return None
+    spin = float(np.trace(np.array(scene.payload.inertia.about_center))) / 3.0
+    return HandShare(
+        scene.payload.mass / hands, spin / hands if scene.payload.grasp is Grasp.RIGID else 0.0
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Snapshot:
-    """A moment to which a scene can return."""
+    """A moment to which a scene can return.
+
+    Args:
+        data: MuJoCo's.
+        number: of the next answer.
+        seen: states that controllers are still to see, by agent name.
+    """
 
     data: mujoco.MjData
     number: int
-    seen: Mapping[str, tuple[tuple[Array, Array], ...]]
+    seen: Mapping[str, tuple[State, ...]]
 
 
 class ControlledScene:
     """A scene that moves on from answer to answer.
 
     Args:
-        scene: undisturbed.
+        scene: undisturbed, as it is.
         trees: of agents by name, of a design.
         postures: by agent name, with which it begins.
         height: of the load's centre [m].
         targets: of the controllers.
-        feedback: that sets the gains of all of them.
-        step: between two answers [s].
-        substeps: of the integration between two answers.
-        delay: answers after which a state is seen.
-        planned: the scene that the plan and the controllers know; None: the same.
+        feedback: that sets all gains.
+        timing: of the answers.
+        planned: the scene that the controllers know; None: as it is.
+    Attributes:
+        found: MuJoCo's model and state.
+        controllers: by agent name.
+        number: of the next answer.
     """
 
     def __init__(
@@ -76,30 +107,34 @@ class ControlledScene:
         height: float,
         targets: Targets,
         feedback: Feedback,
-        step: float = CONTROL_STEP,
-        substeps: int = SUBSTEPS,
-        delay: int = 0,
+        timing: Timing,
         planned: Scene | None = None,
     ) -> None:
         known = scene if planned is None else planned
-        self.found = simulated_scene(scene, trees, postures, height, step / substeps)
-        self.step, self._substeps, self._targets = step, substeps, targets
-        share = hand_share(known.payload, known)
-        self.controllers = {}
+        self.found = simulated_scene(scene, trees, postures, height, timing.step / timing.substeps)
+        self.timing, self._targets, self.number = timing, targets, 0
+        self.controllers: dict[str, WholeBodyController] = {}
         for agent in known.agents:
             body, limits = MovingBody(agent, trees[agent.name]), JointLimits.of(agent, trees[agent.name])
-            self.controllers[agent.name] = WholeBodyController(body, known.ground, limits, share, feedback)
-        self._seen = {name: deque([self._state(name)], delay + 1) for name in self.controllers}
-        self.number = 0
+            self.controllers[agent.name] = WholeBodyController(
+                body, known.ground, limits, hand_share(known), feedback
+            )
+        model = self.found.model
+        self._ramp, self._damping = np.zeros(model.nu), np.zeros(model.nu)
+        for parts in self.found.agents.values():
+            self._damping[parts.actuators] = feedback.rate * joint_inertias(self.found, parts)
+            model.dof_armature[parts.rates] += model.opt.timestep * self._damping[parts.actuators]
+        model.actuator_biasprm[:, 2] = -self._damping
+        mujoco.mj_forward(model, self.found.data)
+        self._seen = {name: deque([self.state(name)], timing.delay + 1) for name in self.controllers}
 
-    def _state(self, name: str) -> tuple[Array, Array]:
-        """Pinocchio's configuration and velocities of an agent."""
-        found, parts = self.found, self.found.agents[name]
-        model, data, body = found.model, found.data, self.controllers[name].body
+    def state(self, name: str) -> State:
+        """Of an agent, now."""
+        found, parts, body = self.found, self.found.agents[name], self.controllers[name].body
+        model, data = found.model, found.data
         joint = model.body_jntadr[parts.root]
         place, rate = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
-        v = np.empty(body.size)
-        turn = data.xmat[parts.root].reshape(3, 3)
+        v, turn = np.empty(body.size), data.xmat[parts.root].reshape(3, 3)
         v[:3], v[3:6] = turn.T @ data.qvel[rate : rate + 3], data.qvel[rate + 3 : rate + 6]
         v[body.rates] = data.qvel[parts.rates]
         return body.coordinates(data.qpos[place : place + 7], data.qpos[parts.positions]), v
@@ -108,22 +143,27 @@ class ControlledScene:
         """Of this moment."""
         return self._targets(self.number)
 
-    def commands(self) -> dict[str, Command]:
-        """What the controllers answer now; torques of those who find none stay as they were."""
-        targets, commands = self.targets(), {}
+    def advance(self) -> dict[str, Command]:
+        """Answers of this moment, by agent name, and on to the next; who has none keeps the torques before."""
+        model, data, targets, commands = self.found.model, self.found.data, self.targets(), {}
         for name, controller in self.controllers.items():
-            self._seen[name].append(self._state(name))
-            commands[name] = controller.command(*self._seen[name][0], targets[name])
-            if not commands[name].reason:
-                self.found.data.ctrl[self.found.agents[name].actuators] = commands[name].torques
-        return commands
-
-    def advance(self) -> None:
-        """To the next answer."""
-        for _ in range(self._substeps):
-            mujoco.mj_step(self.found.model, self.found.data)
-        mujoco.mj_forward(self.found.model, self.found.data)
+            self._seen[name].append(self.state(name))
+            q, v = self._seen[name][0]
+            command = commands[name] = controller.command(q, v, targets[name])
+            rates, actuators = controller.body.rates, self.found.agents[name].actuators
+            self._ramp[actuators] = 0.0
+            if not command.reason:
+                damping = self._damping[actuators]
+                self._ramp[actuators] = model.opt.timestep * damping * command.acceleration[rates]
+                data.ctrl[actuators] = command.torques + damping * v[rates]
+        for place in range(self.timing.substeps):
+            data.ctrl += self._ramp  # the speed at the end of the step
+            if place:
+                mujoco.mj_step1(model, data)
+            mujoco.mj_step2(model, data)
+        mujoco.mj_step1(model, data)
         self.number += 1
+        return commands
 
     def push(self, name: str, frame: str, force: Array) -> None:
         """A force on the centre of mass of an agent's link, in the world [N], until another is said."""

@@ -29,7 +29,7 @@ def joint_inertias(found: SimulatedScene, parts: AgentParts) -> Array:
     mass = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
     holding = sum(len(each.hands) for each in found.agents.values())
-    at_hand = float(model.body_mass[found.load]) / holding
+    at_hand = float(model.body_mass[found.load]) / max(holding, 1)
     for hand in parts.hands.values():
         jacobian = np.zeros((3, model.nv))
         mujoco.mj_jacSite(model, data, jacobian, None, hand)
