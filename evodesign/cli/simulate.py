@@ -68,6 +68,7 @@ def simulate(
     from evodesign.cli.output import console, print_json, show_notes
     from evodesign.cli.progress import precompute_progress
     from evodesign.cli.tables.simulation import simulation_table
+    from evodesign.control.feedback import Feedback
     from evodesign.evaluation.simulation_json import simulations_json
     from evodesign.evaluation.simulations import (
         HOLD_SECONDS,
@@ -79,7 +80,6 @@ def simulate(
     )
     from evodesign.report.opened_design import open_design
     from evodesign.runlog.run import read_run
-    from evodesign.control.feedback import Feedback
     from evodesign.tasks.lift import Lift, profile_named
 
     feedback, logged = Feedback(frequency, damping), read_run(run)

@@ -1,1 +1,1 @@
-"""A controller of every agent on feet: torques that keep balance, trunk and load, found by a quadratic program."""
+"""Whole-body controllers: torques that keep balance, trunk and load, by quadratic programs."""

@@ -11,9 +11,8 @@ joints and their speeds as limits of their accelerations,
     a >= -w^2 (q - q_min) - 2 z w v,     a >= -2 z w (v + v_max),     and likewise above,
 
 so that a joint nears the end of its range like a critically damped oscillator; where no accelerations keep
-all of these, ranges and speeds give way as little as can be. A sole that moves or tilts is brought to rest flat on
-the floor. Within these, least squares
-of what is wanted, in the masses and inertias that it moves:
+all of these, ranges and speeds give way as little as can be. A sole that moves or tilts is brought to rest
+flat on the floor. Within these, least squares of what is wanted, in the masses and inertias that it moves:
 
     balance   of the centre of mass c, with capture point c + v / w0 and w0 = sqrt(g / height):
               horizontally  a_plan + w w0 (c_plan - c) + (w + w0) (v_plan - v),  upwards as all below
@@ -125,7 +124,9 @@ class WholeBodyController:
         )
         self._least = -np.concatenate([each[-1] for each in margins]) / body.total
         self._count, self._wrenches = body.size, cones.shape[1]
-        self._bounds = np.zeros((len(cones) + len(self._limited) + len(self._bounded), body.size + 6 * len(margins)))
+        self._bounds = np.zeros(
+            (len(cones) + len(self._limited) + len(self._bounded), body.size + 6 * len(margins))
+        )
         self._bounds[: len(cones), body.size :] = cones
         ends = range(len(self._bounds) - len(self._bounded), len(self._bounds))
         self._bounds[ends, body.rates[self._bounded]] = 1.0
@@ -167,7 +168,9 @@ class WholeBodyController:
             found = least_squares(*program, *limits, yielding=len(self._bounded))
         if found.reason:
             nothing = np.zeros(len(rates)), np.zeros(count), np.zeros((len(body.feet), 6))
-            return Command(*nothing, hands, capture, f"no torques keep {self.body.agent.name}'s limits: {found.reason}")
+            return Command(
+                *nothing, hands, capture, f"no torques keep {self.body.agent.name}'s limits: {found.reason}"
+            )
         x = origin + free @ found.x
         feet = (total * x[count:]).reshape(-1, 6)
         return Command(motion[rates] @ x + force[rates], x[:count], feet, hands, capture)
@@ -175,7 +178,9 @@ class WholeBodyController:
     def _flattening(self, sole: FrameMotion) -> Array:
         """Acceleration that brings a sole to rest, flat on the floor, in its own axes, shape (6,)."""
         up = sole.turn[2]
-        return self._soles.acceleration(np.array([*(-sole.place[2] * up), -up[1], up[0], 0.0]), -sole.velocity)
+        return self._soles.acceleration(
+            np.array([*(-sole.place[2] * up), -up[1], up[0], 0.0]), -sole.velocity
+        )
 
     def _hands(self, body: BodyMotion, target: Target) -> tuple[Array, list[Array]]:
         """Wrenches on the hands, and what the feedback adds to each one's planned acceleration."""
@@ -198,7 +203,9 @@ class WholeBodyController:
         np.concatenate([task for task, _ in tasks], out=rows[:size, :count])
         scale = LEVEL * np.sqrt(body.mass[rates, rates])
         rows[range(size, size + len(rates)), rates] = scale
-        posture = self._gains.acceleration((target.coordinates - q)[places], (target.velocity - body.velocity)[rates])
+        posture = self._gains.acceleration(
+            (target.coordinates - q)[places], (target.velocity - body.velocity)[rates]
+        )
         wanted.append(scale * (target.acceleration[rates] + posture))
         scale = LEVEL**1.5 * np.tile(np.repeat([mass**0.5, mass / body.spin**0.5], 3), len(body.feet))
         rows[range(size + len(rates), len(rows)), range(count, count + self._wrenches)] = scale

@@ -124,10 +124,8 @@ class MovingBody:
         root = np.concatenate([self.agent.turn @ base_position, [w, x, y, z]])
         return self.coordinates(root, np.array([joints[name] for name in self.agent.joints]))
 
-    def inverse_dynamics(
-        self, q: Array, v: Array, acceleration: Array, feet: Array, hands: Array
-    ) -> Array:
-        """Generalised forces that a motion takes beside those of feet and hands, by pinocchio's RNEA, shape (v,).
+    def inverse_dynamics(self, q: Array, v: Array, acceleration: Array, feet: Array, hands: Array) -> Array:
+        """Forces that a motion takes beside those of feet and hands, by pinocchio's RNEA, shape (v,).
 
         Args:
             q: configuration.

@@ -50,8 +50,8 @@ class Timing:
         delay: answers after which a state is seen.
     """
 
-    step: float = 4e-3
-    substeps: int = 8
+    step: float = 2e-3
+    substeps: int = 4
     delay: int = 0
 
 
@@ -61,9 +61,7 @@ def hand_share(scene: Scene) -> HandShare | None:
     if not hands:
         return None
     spin = float(np.trace(np.array(scene.payload.inertia.about_center))) / 3.0
-    return HandShare(
-        scene.payload.mass / hands, spin / hands if scene.payload.grasp is Grasp.RIGID else 0.0
-    )
+    return HandShare(scene.payload.mass / hands, spin / hands if scene.payload.grasp is Grasp.RIGID else 0.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -144,7 +142,7 @@ class ControlledScene:
         return self._targets(self.number)
 
     def advance(self) -> dict[str, Command]:
-        """Answers of this moment, by agent name, and on to the next; who has none keeps the torques before."""
+        """Answers of this moment, by agent name, and on to the next; without one torques stay."""
         model, data, targets, commands = self.found.model, self.found.data, self.targets(), {}
         for name, controller in self.controllers.items():
             self._seen[name].append(self.state(name))

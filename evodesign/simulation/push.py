@@ -1,6 +1,6 @@
 """A push on somebody's trunk, and what comes of it: who falls, where the load goes, which limits break.
 
-A push is a horizontal force of `PUSH_SECONDS` on the trunk's centre of mass. A simulation ends when somebody
+A push is a horizontal force on the trunk's centre of mass. A simulation ends when somebody
 falls, the load is too far off, a limit is broken for too long, or all have recovered.
 """
 
@@ -19,7 +19,7 @@ from evodesign.simulation.outcome import FALLEN
 from evodesign.simulation.rollout import FRAME
 
 PUSH_SECONDS = 0.1
-"""How long a push lasts [s]."""
+"""How long a push lasts [s], unless another time is said."""
 
 WATCHED_SECONDS = 3.0
 """After which who stands has survived a push [s]."""
@@ -51,11 +51,13 @@ class Push:
         impulse: [N s].
         direction: to which it pushes, from the agent's forward direction to its left [rad].
         agent: its name.
+        seconds: how long it lasts [s].
     """
 
     impulse: float
     direction: float
     agent: str = "robot"
+    seconds: float = PUSH_SECONDS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -113,10 +115,10 @@ class PushTest:
         scene.restore(self._moment)
         agent = scene.controllers[push.agent].body.agent
         angle = agent.facing + push.direction
-        force = push.impulse / PUSH_SECONDS * np.array([math.cos(angle), math.sin(angle), 0.0])
+        force = push.impulse / push.seconds * np.array([math.cos(angle), math.sin(angle), 0.0])
         watched = _Watched(scene, push.agent)
         states, forces, every = [], [], max(1, round(FRAME / scene.timing.step))
-        lasting = round(PUSH_SECONDS / scene.timing.step)
+        lasting = round(push.seconds / scene.timing.step)
         for number in range(round(WATCHED_SECONDS / scene.timing.step)):
             now = force if number < lasting else np.zeros(3)
             scene.push(push.agent, agent.pushed_frame, now)
@@ -184,13 +186,15 @@ class _Watched:
         self.capture = max(self.capture, off[self._pushed])
         if max(*off.values(), load_off) > RECOVERED:
             self.last = self.seconds
-        for name, controller in scene.controllers.items():
+        for name in scene.controllers:
             root = data.xpos[scene.found.agents[name].root]
             if np.linalg.norm(root - targets[name].coordinates[:3]) > FALLEN:
                 self.reason = f"{name} falls"
         broken = {what for name, each in commands.items() for what in self._broken_by(name, each)}
         self._broken = {what: self._broken.get(what, 0.0) + step for what in sorted(broken)}
-        lasting = next((what for what, time in self._broken.items() if time > BROKEN_SECONDS + step / 2), None)
+        lasting = next(
+            (what for what, time in self._broken.items() if time > BROKEN_SECONDS + step / 2), None
+        )
         self.reason = self.reason or lasting or ""
         torques, limits = commands[self._pushed].torques, scene.controllers[self._pushed].limits.torque
         if (np.abs(torques) >= (1.0 - 1e-6) * limits).any():

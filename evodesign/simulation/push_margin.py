@@ -1,15 +1,15 @@
 """The largest push that is survived, in each of eight directions or in the weakest of them.
 
 Bisection between an impulse that is survived and one that is not; who survives an impulse is taken to survive
-every smaller one. For the weakest direction alone every other one is only tried at the least margin so far, and
-bisected where it fails there.
+every smaller one. For the weakest direction alone every other one is only tried at the least margin so far,
+and bisected where it fails there.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from evodesign.simulation.push import Push, PushOutcome, PushTest
 
@@ -46,34 +46,39 @@ class Margin:
 
 
 def margin_in(
-    tests: PushTest, moment: str, direction: float, agent: str, mass: float, most: float = math.inf
+    tests: PushTest,
+    moment: str,
+    push: Push,
+    mass: float,
+    most: float = math.inf,
+    resolution: float = RESOLUTION,
 ) -> Margin:
     """The margin in one direction.
 
     Args:
         tests: of one moment.
         moment: its name.
-        direction: from forwards to the left [rad].
-        agent: who is pushed.
+        push: of any impulse: who is pushed, where to and for how long.
         mass: of the agent [kg].
-        most: an impulse that is known not to be survived, or of which no more is asked [N s].
+        most: an impulse of which no more is asked [N s].
+        resolution: of the margin, relative.
     """
     outcomes: dict[float, PushOutcome] = {}
 
     def fails(impulse: float) -> bool:
-        outcomes[impulse] = tests.pushed(Push(impulse, direction, agent))
+        outcomes[impulse] = tests.pushed(replace(push, impulse=impulse))
         return not outcomes[impulse].survived
 
     low, high = 0.0, min(FIRST * mass, most) if math.isinf(most) else most
     while not fails(high):
         low = high
         if high >= min(most, FASTEST * mass):
-            return Margin(moment, direction, high, "", len(outcomes))
+            return Margin(moment, push.direction, high, "", len(outcomes))
         high = min(2.0 * high, most, FASTEST * mass)
-    while high - low > max(RESOLUTION * high, SMALLEST):
+    while high - low > max(resolution * high, SMALLEST):
         middle = (low + high) / 2.0
         low, high = (low, middle) if fails(middle) else (middle, high)
-    return Margin(moment, direction, low, outcomes[high].reason, len(outcomes))
+    return Margin(moment, push.direction, low, outcomes[high].reason, len(outcomes))
 
 
 def margins(
@@ -81,7 +86,9 @@ def margins(
 ) -> tuple[Margin, ...]:
     """The margin in every direction at every moment; arguments as `margin_in`."""
     return tuple(
-        margin_in(test, name, direction, agent, mass) for name, test in tests.items() for direction in directions
+        margin_in(test, name, Push(0.0, direction, agent), mass)
+        for name, test in tests.items()
+        for direction in directions
     )
 
 
@@ -93,10 +100,12 @@ def least_margin(
     for name, test in tests.items():
         for direction in directions:
             most = math.inf if least is None else least.impulse
-            found = margin_in(test, name, direction, agent, mass, most)
+            found = margin_in(test, name, Push(0.0, direction, agent), mass, most)
             trials += found.trials
             if least is None or found.impulse < most:
                 least = found
             if least.impulse <= 0.0:
                 break
-    return None if least is None else Margin(least.moment, least.direction, least.impulse, least.reason, trials)
+    return (
+        None if least is None else Margin(least.moment, least.direction, least.impulse, least.reason, trials)
+    )

@@ -1,13 +1,13 @@
 """Tests of pushes at moments of holds and lifts, with all who hold the load, or with one robot alone.
 
-Alone a robot holds nothing, stands as in the plan, and brings its centre of mass above the middle of its soles
-before it is pushed.
+Alone a robot holds nothing, stands as in the plan, and brings its centre of mass above the middle of its
+soles before it is pushed.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -18,15 +18,18 @@ from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import Scene
 from evodesign.motion.course import LiftCourse
 from evodesign.posture.results import AgentPosture
-from evodesign.simulation.controlled import ControlledScene, Timing
+from evodesign.simulation.controlled import ControlledScene, Targets, Timing
 from evodesign.simulation.push import PushTest
 from evodesign.tree.model import Tree
 
 SETTLING = 0.1
 """Before a push in a hold [s]: contacts have taken the weight."""
 
-SHIFTING = 1.5
-"""Before a push on a robot alone [s]: it has come above its soles."""
+SHIFTING = 3.0
+"""Before a push on a robot alone at most [s]: it comes above its soles."""
+
+ABOVE = 1e-3
+"""Nearer than this is its capture point then [m]."""
 
 LIFT_SHARES = (1.0 / 3.0, 2.0 / 3.0)
 """Of a lift's time at which it is pushed."""
@@ -43,8 +46,8 @@ class Conditions:
         mass: of the load, as a factor; controllers know nothing of either.
     """
 
-    feedback: Feedback = Feedback()
-    timing: Timing = Timing()
+    feedback: Feedback = field(default_factory=Feedback)
+    timing: Timing = field(default_factory=Timing)
     friction: float = 1.0
     mass: float = 1.0
 
@@ -97,7 +100,10 @@ def alone_test(
     controlled = _controlled(
         scene.only(robot), trees, {robot.name: posture}, 0.0, lambda _: standing, conditions
     )
-    _advance(controlled, SHIFTING)
+    _advance(controlled, SETTLING)
+    while controlled.number * conditions.timing.step < SHIFTING:
+        if np.linalg.norm(controlled.advance()[robot.name].capture) < ABOVE:
+            break
     return PushTest(controlled, None, controlled.snapshot())
 
 
@@ -127,7 +133,7 @@ def _controlled(
     trees: Mapping[str, Tree],
     postures: Mapping[str, AgentPosture],
     height: float,
-    targets: object,
+    targets: Targets,
     conditions: Conditions,
 ) -> ControlledScene:
     return ControlledScene(
