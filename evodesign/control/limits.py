@@ -20,6 +20,10 @@ from evodesign.tree.model import Tree
 Array = NDArray[np.float64]
 
 
+WATCHED_SECONDS = 3.0
+"""For which a push is simulated at most [s]: who stands then has survived it."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class JointLimits:
     """Of an agent's j joints; infinite where there is none.

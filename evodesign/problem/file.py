@@ -280,6 +280,18 @@ class LimitsTable(Table, frozen=True):
     push_n: NotNegative = 5.0
 
 
+class PushesTable(Table, frozen=True):
+    """`[push]`: pushes on the robot's trunk that are simulated for quantities such as `push_margin`.
+
+    `impulse_n_s` is that of the push after which the load is tracked; `frequency_rad_s` and `damping_ratio`
+    set all gains of the controllers.
+    """
+
+    impulse_n_s: Positive = 10.0
+    frequency_rad_s: Positive = 8.0
+    damping_ratio: Positive = 1.0
+
+
 class CollisionsTable(Table, frozen=True):
     """`[collisions]`: bodies keep clear of each other, of load, floor and partner by at least `margin_m`.
 
@@ -378,6 +390,7 @@ class ProblemFile(Table, frozen=True):
     baseline: BaselineTable = BaselineTable()
     disturbance: tuple[DisturbanceTable, ...] = ()
     collisions: CollisionsTable | None = None
+    push: PushesTable | None = None
     description: str = ""
 
     @property

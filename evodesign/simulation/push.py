@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from evodesign.control.controller import Command
+from evodesign.control.limits import WATCHED_SECONDS
 from evodesign.posture.results import Array
 from evodesign.simulation.controlled import ControlledScene, Snapshot
 from evodesign.simulation.outcome import FALLEN
@@ -20,9 +21,6 @@ from evodesign.simulation.rollout import FRAME
 
 PUSH_SECONDS = 0.1
 """How long a push lasts [s], unless another time is said."""
-
-WATCHED_SECONDS = 3.0
-"""After which who stands has survived a push [s]."""
 
 LOAD_OFF = 0.1
 """How far the load may be from its path [m]."""
