@@ -51,7 +51,7 @@ def margin_in(
     push: Push,
     mass: float,
     most: float = math.inf,
-    resolution: float = RESOLUTION,
+    resolution: float | None = None,
 ) -> Margin:
     """The margin in one direction.
 
@@ -61,7 +61,7 @@ def margin_in(
         push: of any impulse: who is pushed, where to and for how long.
         mass: of the agent [kg].
         most: an impulse of which no more is asked [N s].
-        resolution: of the margin, relative.
+        resolution: of the margin, relative; None: `RESOLUTION`.
     """
     outcomes: dict[float, PushOutcome] = {}
 
@@ -75,7 +75,7 @@ def margin_in(
         if high >= min(most, FASTEST * mass):
             return Margin(moment, push.direction, high, "", len(outcomes))
         high = min(2.0 * high, most, FASTEST * mass)
-    while high - low > max(resolution * high, SMALLEST):
+    while high - low > max((resolution or RESOLUTION) * high, SMALLEST):
         middle = (low + high) / 2.0
         low, high = (low, middle) if fails(middle) else (middle, high)
     return Margin(moment, push.direction, low, outcomes[high].reason, len(outcomes))
