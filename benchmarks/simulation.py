@@ -20,6 +20,7 @@ from typing import Any
 import evodesign
 from benchmarks.inner_problem import HERE
 from evodesign.analysis.front import front
+from evodesign.control.feedback import Feedback
 from evodesign.evaluation.factory import evaluator_of
 from evodesign.evaluation.lifts import Lifts
 from evodesign.evaluation.progress import SILENT
@@ -28,7 +29,6 @@ from evodesign.evaluation.simulations import HOLD_SECONDS, simulated_holds, simu
 from evodesign.records import Lift
 from evodesign.report.opened_design import open_design
 from evodesign.runlog.run import read_run
-from evodesign.simulation.feedback import Feedback
 
 FEEDBACK = Feedback()
 

@@ -51,6 +51,7 @@ def simulate(
         [('short, 0.8 m', True, True), ('tall, 0.8 m', True, True)]
     """
     refuse_without_mujoco()
+    from evodesign.control.feedback import Feedback
     from evodesign.evaluation.simulations import (
         HOLD_SECONDS,
         lifts_among,
@@ -58,7 +59,6 @@ def simulate(
         simulated_holds,
         simulated_lifts,
     )
-    from evodesign.simulation.feedback import Feedback
 
     if (from_m is None) != (to_m is None):
         raise InputError("simulate", "from_m", "both from_m and to_m, or neither", "one of them")

@@ -30,6 +30,7 @@ from evodesign.cli.merge import merge
 from evodesign.cli.options import BAD_INPUT, NOTHING_SOLVED
 from evodesign.cli.polish import polish
 from evodesign.cli.problems import problems
+from evodesign.cli.push import push
 from evodesign.cli.recover import recover
 from evodesign.cli.report import report
 from evodesign.cli.reproduce import reproduce
@@ -65,6 +66,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "evaluate": evaluate,
     "lift": lift,
     "simulate": simulate,
+    "push": push,
     "polish": polish,
     "check": check,
     "problems": problems,

@@ -48,6 +48,13 @@ def simulate(
         float, typer.Option(metavar="RAD_S", help="Natural frequency of the joints' feedback [rad/s].")
     ] = 8.0,
     damping: Annotated[float, typer.Option(metavar="RATIO", help="Its damping ratio.")] = 1.0,
+    push: Annotated[
+        float | None,
+        typer.Option(metavar="N_S", help="Push the robot in its holds, by this impulse [N s] on its trunk."),
+    ] = None,
+    direction: Annotated[
+        float, typer.Option(metavar="DEG", help="To where, from forwards to the left.")
+    ] = 0.0,
     mcap: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write a recording for Foxglove and Lichtblick.")
     ] = None,
@@ -61,6 +68,12 @@ def simulate(
     """Simulate holds and lifts of a design in MuJoCo: contacts, motors, feedback; how far from the plan."""
     from evodesign.simulation.installed import draw_without_a_screen, refuse_without_mujoco
 
+    if push is not None:
+        from evodesign.cli.push import push_once
+
+        holds = (height or (), person, payload)
+        push_once(run, design, (push, direction), holds, (frequency, damping), jobs, video, json=json)
+        return
     if (begin is None) != (end is None):
         raise InputError("--from", "", "both --from and --to, or neither", "one of them")
     refuse_without_mujoco()
@@ -68,6 +81,7 @@ def simulate(
     from evodesign.cli.output import console, print_json, show_notes
     from evodesign.cli.progress import precompute_progress
     from evodesign.cli.tables.simulation import simulation_table
+    from evodesign.control.feedback import Feedback
     from evodesign.evaluation.simulation_json import simulations_json
     from evodesign.evaluation.simulations import (
         HOLD_SECONDS,
@@ -79,7 +93,6 @@ def simulate(
     )
     from evodesign.report.opened_design import open_design
     from evodesign.runlog.run import read_run
-    from evodesign.simulation.feedback import Feedback
     from evodesign.tasks.lift import Lift, profile_named
 
     feedback, logged = Feedback(frequency, damping), read_run(run)
@@ -146,6 +159,7 @@ def _write_recording(path: Path, opened: OpenedDesign, simulations: Sequence[Sim
 
 def _write_film(path: Path, simulations: Sequence[SimulatedCase]) -> None:
     from evodesign.cli.output import write_bytes
-    from evodesign.simulation.film import film
+    from evodesign.simulation.film import Filmed, film
 
-    write_bytes(path, film([each.rollout for each in simulations]), "--video")
+    shown = [Filmed(each.rollout.model, each.rollout.states) for each in simulations]
+    write_bytes(path, film(shown), "--video")

@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TypeVar
 
 import msgspec
 
@@ -28,6 +29,7 @@ from evodesign.posture.results import AgentPosture, Array, CaseSolution, Instant
 from evodesign.problem.build import DesignProblem
 from evodesign.quantities.design_result import DesignResult
 from evodesign.quantities.objectives import objective_values
+from evodesign.quantities.push_quantities import SIMULATED
 from evodesign.records import (
     ActiveLimit,
     AgentDetail,
@@ -35,10 +37,12 @@ from evodesign.records import (
     Assessment,
     CaseDetail,
     CaseOutcome,
+    Constraint,
     Genome,
     Hold,
     InstantDetail,
     LoadCaseDetail,
+    Objective,
     ProblemSource,
     ReachOutcome,
     Status,
@@ -46,6 +50,8 @@ from evodesign.records import (
 )
 from evodesign.searches.surrogate.threads import one_thread
 from evodesign.violations import BODIES_APART, missed_height, total_violation
+
+Named = TypeVar("Named", Objective, Constraint)
 
 UNDISTURBED = ""
 """Name of the load case in which nothing happens."""
@@ -141,12 +147,19 @@ class Evaluator:
         known = constraints
         if any(solution.status is Status.BODIES_OVERLAP for solution in failed):  # nothing else is known
             known = tuple(constraint for constraint in constraints if constraint.name == BODIES_APART)
-        constrained = objective_values(known, result)
         cases = tuple(case_outcome(solution, native=self._native) for solution in result.cases)
+        missed, objectives = missed_height(reach, cases), self.problem.objectives
+        constrained = objective_values(_unsimulated(known), result)
+        violation = total_violation(_unsimulated(constraints), constrained, missed)
+        if violation == 0.0:
+            constrained = objective_values(known, result)
+            violation = total_violation(constraints, constrained, missed)
+        else:  # simulations take seconds
+            objectives = _unsimulated(objectives)
         return Assessment(
             design=dict(self.problem.space.named(values)),
-            objectives=objective_values(self.problem.objectives, result),
-            violation=total_violation(constraints, constrained, missed_height(reach, cases)),
+            objectives=objective_values(objectives, result),
+            violation=violation,
             status=_status(result),
             reason=failed[0].reason if failed else "solved",
             reach=reach,
@@ -154,6 +167,10 @@ class Evaluator:
             constraints=constrained or msgspec.UNSET,
             rated=rated_of(result) or msgspec.UNSET,
         )
+
+
+def _unsimulated(quantities: tuple[Named, ...]) -> tuple[Named, ...]:
+    return tuple(each for each in quantities if each.name not in SIMULATED)
 
 
 def _status(result: DesignResult) -> Status:

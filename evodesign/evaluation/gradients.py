@@ -50,6 +50,7 @@ from evodesign.quantities.motion_quantities import (
 )
 from evodesign.quantities.objectives import QUANTITIES, REACH, SHARED_REACH, objective_value, split_name
 from evodesign.quantities.person_quantities import HOLDING_TIME
+from evodesign.quantities.push_quantities import SIMULATED
 from evodesign.records import Case, CaseGradient, Gradients, Lift
 from evodesign.violations import BODIES_APART, HEIGHT, PARTS_APART
 
@@ -76,7 +77,7 @@ def assessed_gradients(
         values: of the design, one number per parameter.
         result: what was computed of it.
     """
-    design = _Design(problem, sensitivities, tuple(values), result)
+    design = _Design(problem, sensitivities, tuple(values), replace(result, pushes=None))
     names = dict.fromkeys([*(o.name for o in problem.objectives), *(c.name for c in problem.constraints)])
     found = {name: design.gradient(name) for name in names} | {HEIGHT: design.of_height()}
     records = problem.space.records
@@ -159,6 +160,8 @@ class _Design:
 
     def gradient(self, name: str) -> Found:
         """One per parameter, in the quantity's unit per unit of the parameter."""
+        if name in SIMULATED:
+            return NotDifferentiable("a simulation has no gradient")
         if objective_value(name, self._result) is None:
             return NotDifferentiable("the design has no such value")
         way, quantity = split_name(name)

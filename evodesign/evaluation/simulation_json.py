@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from evodesign.control.feedback import Feedback
 from evodesign.evaluation.simulations import SimulatedCase
-from evodesign.simulation.feedback import Feedback
 from evodesign.simulation.outcome import AgentOutcome
 
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import msgspec
 
+from evodesign.control.feedback import Feedback
 from evodesign.errors import InputError
 from evodesign.evaluation.logged_posture import logged_posture
 from evodesign.mechanics.scene import Scene, scene_of
 from evodesign.motion.solution import LiftSolution
 from evodesign.records import CaseDetail
-from evodesign.simulation.feedback import Feedback
 from evodesign.simulation.model import STEP
 from evodesign.simulation.outcome import Rollout, SimulationOutcome, outcome_of
 from evodesign.simulation.plan import Plan, hold_plan, lift_plan

@@ -44,6 +44,7 @@ from evodesign.problem.from_tables import (
 )
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import held_by, payloads, refuse_stiff_arms, scene_disturbances
+from evodesign.problem.pushes import pushes_of
 from evodesign.problem.samples import samples_of
 from evodesign.problem.source import decode_toml
 from evodesign.problem.stance_limits import stance_of
@@ -52,6 +53,7 @@ from evodesign.problem.symmetric import resolved_symmetry
 from evodesign.problem.teams import refuse_what_teams_lack, teams_of
 from evodesign.problem.torque_limits import refuse_unlimited
 from evodesign.quantities.objectives import SHARED_REACH
+from evodesign.quantities.push_quantities import PushSettings
 from evodesign.records import (
     SUM,
     Case,
@@ -95,6 +97,7 @@ class DesignProblem:
         joint_start: genomes that its starts begin with.
         stances: postures in which the robot stands alone, for what they ask of actuators.
         samples: how many people of measured distributions answer for a front; 0 for none.
+        pushes: that are simulated; None where no quantity asks for them.
         whole_reach: whether the lowest load of all is asked for, and not only what tasks need.
     """
 
@@ -117,6 +120,7 @@ class DesignProblem:
     joint_start: tuple[Genome, ...]
     stances: tuple[StanceCase, ...] = ()
     samples: int = 0
+    pushes: PushSettings | None = None
     whole_reach: bool = False
 
     def __repr__(self) -> str:
@@ -289,6 +293,8 @@ def build_problem(source: ProblemSource) -> DesignProblem:
     )
     options = available(options)
     constraints = constraints_of(tables, source, robots[:1], people)
+    objectives = objectives_of(tables, source, scenes)
+    asked = [*(each.name for each in objectives), *(each.name for each in constraints)]
     return DesignProblem(
         name=tables.name,
         source=msgspec.structs.replace(source, method=options.method),
@@ -296,7 +302,7 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         space=space,
         tasks=tasks_of(tables, source),
         weights=weights,
-        objectives=objectives_of(tables, source, scenes),
+        objectives=objectives,
         constraints=with_what_can_be_built(constraints, scenes[0].designed, space),
         options=options,
         limits=worker_limits(tables),
@@ -309,4 +315,5 @@ def build_problem(source: ProblemSource) -> DesignProblem:
         joint_start=joint_start(tables, source, start),
         stances=standing_cases(tables, source, scenes[0].designed),
         samples=samples_of(tables, source),
+        pushes=pushes_of(tables, source, scenes, asked),
     )

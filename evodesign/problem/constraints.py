@@ -28,6 +28,7 @@ from evodesign.violations import BODIES_APART, PARTS_APART
 
 SUFFIXES: Mapping[str, str] = {
     "N m": "_n_m",
+    "N s": "_n_s",
     "N": "_n",
     "kg": "_kg",
     "m": "_m",

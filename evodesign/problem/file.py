@@ -406,6 +406,22 @@ class LimitsTable(Table, frozen=True):
     push_n: NotNegative = 5.0
 
 
+class PushesTable(Table, frozen=True):
+    """`[push]`: pushes on the robot's trunk that are simulated for quantities such as `push_margin`.
+
+    Docs: control.md.
+
+    Attributes:
+        impulse_n_s: impulse of the push after which the load is tracked. Since 0.3.
+        frequency_rad_s: bandwidth of all controllers. Since 0.3.
+        damping_ratio: damping of all controllers. Since 0.3.
+    """
+
+    impulse_n_s: Positive = 10.0
+    frequency_rad_s: Positive = 8.0
+    damping_ratio: Positive = 1.0
+
+
 class CollisionsTable(Table, frozen=True):
     """`[collisions]`: bodies do not overlap each other, load, floor or partner.
 
@@ -570,6 +586,7 @@ class ProblemFile(Table, frozen=True):
     baseline: BaselineTable = BaselineTable()
     disturbance: tuple[DisturbanceTable, ...] = ()
     collisions: CollisionsTable | None = None
+    push: PushesTable | None = None
     description: str = ""
 
     @property

@@ -78,6 +78,21 @@ MEANINGS: Mapping[str, Meaning] = {
     ),
     "energy": Meaning("`robot_power` over the time of a lift; mean over all lifts"),
     "lift_seconds": Meaning("least time of a lift ([motion](motion.md#the-least-time)); mean over all lifts"),
+    "push_margin": Meaning(
+        "largest push on the robot's trunk, of any direction, that robot, people and load survive "
+        "([control](control.md))",
+        Sense.MAXIMISE,
+    ),
+    "push_margin_alone": Meaning("the same of the robot without load and people", Sense.MAXIMISE),
+    "load_tracking": Meaning(
+        "largest distance of the load from its path after the problem's push, of any direction"
+    ),
+    "torque_saturation": Meaning(
+        "largest share of the time after that push in which a motor of the robot is at its limit"
+    ),
+    "recovery_seconds": Meaning(
+        "longest time from that push until everybody and the load are back, at most 3 s"
+    ),
     "paper_cost": Meaning("the paper's cost ([model](model.md))"),
     "paper2023_cost": Meaning(
         "the sequel's cost, 100 over its fitness: the largest sum of torque norms over the heights, of all "

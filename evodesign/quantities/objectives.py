@@ -73,6 +73,19 @@ from evodesign.quantities.person_quantities import (
     HUMAN_LOAD_TORQUE,
     endurance_seconds,
 )
+from evodesign.quantities.push_quantities import (
+    ALONE,
+    MARGIN,
+    RECOVERY,
+    SATURATION,
+    SIMULATED,
+    TRACKING,
+    load_tracking,
+    push_margin,
+    push_margin_alone,
+    recovery_seconds,
+    torque_saturation,
+)
 from evodesign.records import Constraint, Lift, Objective
 from evodesign.violations import BODIES_APART, PARTS_APART
 
@@ -289,6 +302,7 @@ NEED_ROBOTS = frozenset(
         *("robot_torque", "peak_torque", "holding_power", "hand_deflection", WINDING, POWER, ENERGY),
         *("mass", "com_height", "actuator_mass", "cost", "torque_margin", "least_safety_factor"),
         *(BODIES_APART, PARTS_APART, *PAPER_COSTS),
+        *SIMULATED,
     }
 )
 """Quantities that are of robots."""
@@ -328,6 +342,11 @@ WHOLE: Mapping[str, ObjectiveKind] = {
     ENERGY: ObjectiveKind("J", energy),
     LEAST_TIME: ObjectiveKind("s", mean_least_time),
     f"{WORST}{LEAST_TIME}": ObjectiveKind("s", worst_least_time),
+    MARGIN: ObjectiveKind("N s", push_margin),
+    ALONE: ObjectiveKind("N s", push_margin_alone),
+    TRACKING: ObjectiveKind("m", load_tracking),
+    SATURATION: ObjectiveKind("1", torque_saturation),
+    RECOVERY: ObjectiveKind("s", recovery_seconds),
     "paper_cost": ObjectiveKind("(10 N m)^2", paper_cost),
     "paper2023_cost": ObjectiveKind("N m", paper2023_cost),
     "paper2025_cost": ObjectiveKind("(N m)^2", paper2025_cost),

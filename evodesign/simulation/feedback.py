@@ -14,36 +14,13 @@ Source: Craig, Introduction to Robotics (2005), section 9.5 (gains of a joint's 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import mujoco
 import numpy as np
 
-from evodesign.errors import InputError
+from evodesign.control.feedback import Feedback
 from evodesign.mechanics.floating_base import ROOT
 from evodesign.posture.results import Array
 from evodesign.simulation.model import AgentParts, SimulatedScene
-
-
-@dataclass(frozen=True, slots=True)
-class Feedback:
-    """Of all joints of both agents.
-
-    Args:
-        frequency: natural frequency w [rad/s].
-        damping: ratio z [1]; 1 is critical.
-    Raises:
-        InputError: a number that is not positive.
-    """
-
-    frequency: float = 8.0
-    damping: float = 1.0
-
-    def __post_init__(self) -> None:
-        """Refuse what is no feedback."""
-        for name in ("frequency", "damping"):
-            if not 0.0 < getattr(self, name) < np.inf:
-                raise InputError("feedback", name, "a positive number", f"{getattr(self, name)}")
 
 
 def joint_inertias(found: SimulatedScene, parts: AgentParts) -> Array:
@@ -52,7 +29,7 @@ def joint_inertias(found: SimulatedScene, parts: AgentParts) -> Array:
     mass = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
     holding = sum(len(each.hands) for each in found.agents.values())
-    at_hand = float(model.body_mass[found.load]) / holding
+    at_hand = float(model.body_mass[found.load]) / max(holding, 1)
     for hand in parts.hands.values():
         jacobian = np.zeros((3, model.nv))
         mujoco.mj_jacSite(model, data, jacobian, None, hand)

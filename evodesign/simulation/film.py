@@ -1,29 +1,61 @@
-"""A film of simulations, drawn by MuJoCo without a screen, as an animated GIF."""
+"""A film of simulations, drawn by MuJoCo without a screen, as an animated GIF; pushes are arrows."""
 
 from __future__ import annotations
 
 import io
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any
 
 import mujoco
+import numpy as np
 from PIL import Image
 
 from evodesign.errors import InputError
-from evodesign.simulation.outcome import Rollout
+from evodesign.posture.results import Array
+from evodesign.simulation.push import PushOutcome, PushTest
 from evodesign.simulation.rollout import FRAME
 
 WIDTH, HEIGHT = 480, 360
 EVERY = 2
 """Frames of a rollout per picture."""
 
+ARROW = 1e-3
+"""Length of an arrow per force [m/N]."""
 
-def film(rollouts: Sequence[Rollout]) -> bytes:
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Filmed:
+    """What a film shows.
+
+    Args:
+        model: MuJoCo's.
+        states: `qpos` at frames, shape (f, q).
+        forces: on a body at frames, in the world [N], shape (f, 3); none for no arrows.
+        body: its number.
+    """
+
+    model: Any
+    states: Array
+    forces: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    body: int = 0
+
+
+def pushed_film(test: PushTest, outcome: PushOutcome) -> Filmed:
+    """A push whose states were kept."""
+    agent = test.scene.controllers[outcome.push.agent].body.agent
+    model = test.scene.found.model
+    body = int(model.body(f"{agent.name}/{agent.pushed_frame}").id)
+    return Filmed(model, outcome.states, outcome.forces, body)
+
+
+def film(shown: Sequence[Filmed]) -> bytes:
     """Simulations one after another, as fast as they were.
 
     Raises:
         InputError: MuJoCo cannot draw here.
     """
-    pictures = [picture for rollout in rollouts for picture in _pictures(rollout)]
+    pictures = [picture for each in shown for picture in _pictures(each)]
     if not pictures:
         raise InputError("--video", "", "a simulation to be shown", "none")
     content = io.BytesIO()
@@ -38,18 +70,28 @@ def film(rollouts: Sequence[Rollout]) -> bytes:
     return content.getvalue()
 
 
-def _pictures(rollout: Rollout) -> Iterator[Image.Image]:
-    model = rollout.model
-    data, camera = mujoco.MjData(model), mujoco.MjvCamera()
+def _pictures(shown: Filmed) -> Iterator[Image.Image]:
+    data, camera = mujoco.MjData(shown.model), mujoco.MjvCamera()
     camera.lookat, camera.distance, camera.azimuth, camera.elevation = [0.0, 0.0, 0.9], 3.2, 115.0, -12.0
     try:
-        renderer = mujoco.Renderer(model, HEIGHT, WIDTH)
+        renderer = mujoco.Renderer(shown.model, HEIGHT, WIDTH)
     except (ImportError, AttributeError, RuntimeError, Warning, mujoco.FatalError) as error:  # of OpenGL
         wanted = "a machine on which MuJoCo draws (MUJOCO_GL=egl or osmesa without a screen)"
         raise InputError("--video", "", wanted, f"{error}") from error
     with renderer:
-        for state in rollout.states[::EVERY]:
-            data.qpos = state
-            mujoco.mj_forward(model, data)
+        for number in range(0, len(shown.states), EVERY):
+            data.qpos = shown.states[number]
+            mujoco.mj_forward(shown.model, data)
             renderer.update_scene(data, camera)
+            if number < len(shown.forces) and shown.forces[number].any():
+                _draw_arrow(renderer.scene, data.xipos[shown.body], shown.forces[number])
             yield Image.fromarray(renderer.render()).quantize(64)
+
+
+def _draw_arrow(scene: Any, end: Array, force: Array) -> None:
+    """An arrow that ends where the force acts."""
+    geom = scene.geoms[scene.ngeom]
+    red = np.array([0.85, 0.1, 0.1, 1.0], np.float32)
+    mujoco.mjv_initGeom(geom, mujoco.mjtGeom.mjGEOM_ARROW, np.zeros(3), np.zeros(3), np.eye(3).ravel(), red)
+    mujoco.mjv_connector(geom, mujoco.mjtGeom.mjGEOM_ARROW, 0.03, end - ARROW * force, end)
+    scene.ngeom += 1

@@ -20,6 +20,18 @@ def refuse_without_mujoco() -> None:
         raise InputError("simulate", "", wanted, "no package 'mujoco'")
 
 
+def refuse_without_a_controller() -> None:
+    """Refuse to push anybody without MuJoCo and DAQP.
+
+    Raises:
+        InputError: one of them is not installed.
+    """
+    missing = next((name for name in ("mujoco", "daqp") if find_spec(name) is None), None)
+    if missing is not None:
+        wanted = "MuJoCo and DAQP installed (pip install 'evodesign[control]')"
+        raise InputError("push", "", wanted, f"no package '{missing}'")
+
+
 def draw_without_a_screen() -> None:
     """Let MuJoCo draw by EGL on a machine without a screen, unless the user has said by what."""
     if sys.platform == "linux" and "DISPLAY" not in os.environ:

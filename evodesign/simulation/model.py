@@ -25,13 +25,13 @@ import mujoco
 import numpy as np
 
 from evodesign.body.placement import Placement, quaternion_wxyz
+from evodesign.control.limits import torque_limit
 from evodesign.mechanics.agent import Agent, Contact
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.contact import Ground
 from evodesign.mechanics.payload import Grasp, Payload
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture, Array
-from evodesign.tree.equip import actuators_of
 from evodesign.tree.frames import link_frames
 from evodesign.tree.mjcf_write import mjcf_text
 from evodesign.tree.model import JointKind, Tree
@@ -196,7 +196,7 @@ def _add_agent(spec: Any, agent: Agent, tree: Tree, ground: Ground, give: Mappin
     for hand in agent.hands:
         part.body(hand.frame).add_site(name=hand.name)
     for joint in agent.joints:
-        _add_motor(part, joint, _torque_limit(agent, tree, joint))
+        _add_motor(part, joint, torque_limit(agent, tree, joint))
     spec.attach(part, prefix=f"{agent.name}/", frame=spec.worldbody.add_frame())
 
 
@@ -213,14 +213,6 @@ def _add_motor(part: Any, joint: str, limit: float) -> None:
         forcelimited=limited,
         forcerange=[-limit, limit] if limited else [0.0, 0.0],
     )
-
-
-def _torque_limit(agent: Agent, tree: Tree, joint: str) -> float:
-    """The peak torque of a joint's actuator, else its limit in the problem or the file [N m]."""
-    driven = actuators_of(tree)
-    if joint in driven:
-        return float(driven[joint].peak)
-    return float(agent.torque_limits.get(joint, math.inf))
 
 
 def _add_grasp(

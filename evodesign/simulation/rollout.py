@@ -18,10 +18,11 @@ from collections.abc import Mapping
 import mujoco
 import numpy as np
 
+from evodesign.control.feedback import Feedback
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import Array
 from evodesign.simulation.contact_wrenches import foot_wrenches, hand_wrenches
-from evodesign.simulation.feedback import Feedback, set_gains
+from evodesign.simulation.feedback import set_gains
 from evodesign.simulation.model import SimulatedScene, simulated_scene
 from evodesign.simulation.outcome import FALLEN, AgentRollout, Rollout
 from evodesign.simulation.plan import Plan

@@ -165,6 +165,7 @@ LINES: dict[str, tuple[tuple[object, ...], ...]] = {
         ("simulate", "run", 1, "--height", 0.8, "--seconds", 0.3, "--mcap", "hold.mcap"),
         ("simulate", "run", 1, "--from", 0.9, "--to", 2.5, "--knots", 8, "--profile", "free"),
     ),
+    "push": (("push", "run", 1, "--height", 0.8, "--direction", 90, "--alone"),),
     "polish": (("polish", "run", 1, "--evaluations", 2),),
     "check": (
         ("check", "small.toml"),

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from evodesign.control.feedback import Feedback
 from evodesign.errors import InputError
 from evodesign.evaluation.clearance import solved_distances
 from evodesign.evaluation.evaluate import Evaluator
@@ -25,7 +26,6 @@ from evodesign.report.figures.design import write_design_figures
 from evodesign.report.page.bodies import bodies
 from evodesign.report.replay.layout import layout_text
 from evodesign.report.scene_models import SceneSet
-from evodesign.simulation.feedback import Feedback
 
 G = 9.81
 

@@ -17,6 +17,7 @@ import pytest
 
 from evodesign.body.shape import Box, Cylinder, Sphere
 from evodesign.collision.rules import partner_side
+from evodesign.control.feedback import Feedback
 from evodesign.errors import InputError
 from evodesign.evaluation.evaluate import Evaluator, case_outcome
 from evodesign.evaluation.evaluation_json import evaluation_json
@@ -41,7 +42,6 @@ from evodesign.report.page.bodies import bodies
 from evodesign.report.replay.layout import layout_text
 from evodesign.report.replay.messages import messages
 from evodesign.report.scene_models import SceneSet
-from evodesign.simulation.feedback import Feedback
 from evodesign.tasks import Lift
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_write import urdf_text

@@ -8,12 +8,12 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from evodesign.control.feedback import Feedback
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.simulations import simulated_holds
 from evodesign.guess.preflight import preflight
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import source_of
-from evodesign.simulation.feedback import Feedback
 from evodesign.tree.urdf_write import urdf_text
 from tests.robots import SHARED
 

@@ -9,11 +9,11 @@ import msgspec
 import numpy as np
 import pytest
 
+from evodesign.control.feedback import Feedback
 from evodesign.errors import InputError
 from evodesign.mechanics.agent import SIDES
 from evodesign.mechanics.payload import Grasp
 from evodesign.posture.results import AgentPosture
-from evodesign.simulation.feedback import Feedback
 from evodesign.simulation.model import STEP
 from evodesign.simulation.outcome import Rollout, SimulationOutcome, outcome_of
 from evodesign.simulation.plan import hold_plan, lift_plan

@@ -1,0 +1,166 @@
+"""Push margins of the designs of a run: time, half the step, other conditions, rankings, and who solves.
+
+For the first feasible designs of a run the least push margin of the first hold is found (and of the robot
+alone), again with half of all steps, and under other friction, load mass and sensor delay; Kendall's tau
+between mass, torques and margins goes over all of them. The quadratic programs that come up after a push are
+solved by each library that is installed (`pip install quadprog piqp`).
+
+    python -m benchmarks.push RUN [--designs 10] [--half] [--others] [--solvers]
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from importlib.util import find_spec
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+import evodesign.control.controller as controller
+from evodesign.control.quadratic import QuadraticSolution, least_squares
+from evodesign.evaluation.progress import SILENT
+from evodesign.evaluation.pushes import PERTURBED, Pushed
+from evodesign.mechanics.agent import HUMAN, ROBOT
+from evodesign.report.opened_design import open_design
+from evodesign.runlog.run import read_run
+from evodesign.simulation.controlled import Timing
+from evodesign.simulation.push import Push
+from evodesign.simulation.push_margin import Margin, least_margin
+from evodesign.simulation.pushed_plan import Conditions
+
+Array = NDArray[np.float64]
+Program = tuple[Array, Array, Array, Array, Array]
+
+
+def first_hold(run: Path, design: int) -> Pushed:
+    """Where the robot of a design is pushed."""
+    opened = open_design(read_run(run), design, 1, SILENT)
+    return Pushed(opened.rebuilt.problem.scenes, opened.scene_set().robot, opened.cases[:1])
+
+
+def margin(pushed: Pushed, conditions: Conditions) -> tuple[Margin, float]:
+    """The least one, and the processor time that it takes [s]."""
+    began = time.process_time()
+    found = least_margin(pushed.tests(conditions), ROBOT, pushed.mass())
+    assert found is not None
+    return found, time.process_time() - began
+
+
+def designs(run: Path, count: int, conditions: Mapping[str, Conditions]) -> None:
+    """Print each design's margins, and how rankings agree."""
+    log, rows = read_run(run), []
+    feasible = [each for each in log.evaluations if each.assessment.violation == 0.0][:count]
+    for each in feasible:
+        pushed = first_hold(run, each.number)
+        found = {name: margin(pushed, other) for name, other in conditions.items()}
+        alone, spent = margin(replace(pushed, alone=True), Conditions())
+        torques = dict.fromkeys((ROBOT, HUMAN), 0.0)
+        for role in torques:
+            agents = [own for name, own in pushed.holds[0].agents.items() if name.startswith(role)]
+            torques[role] = float(np.linalg.norm([t for own in agents for t in own.torques_n_m.values()]))
+        rows.append([pushed.mass(), *torques.values(), found["as planned"][0].impulse, alone.impulse])
+        told = ", ".join(f"{name} {m.impulse:.2f} N s ({s:.1f} s)" for name, (m, s) in found.items())
+        weakest = found["as planned"][0]
+        print(
+            f"design {each.number}, {pushed.mass():.1f} kg: {told}, "
+            f"alone {alone.impulse:.2f} ({spent:.1f} s); "
+            f"to {np.degrees(weakest.direction):.0f} degrees: {weakest.reason}",
+            flush=True,
+        )
+    names = ("mass", "robot torque", "human torque", "margin", "margin alone")
+    for (first, a), (second, b) in combinations(zip(names, np.array(rows).T, strict=True), 2):
+        print(f"tau of {first} and {second}: {scipy.stats.kendalltau(a, b).statistic:.2f}")
+
+
+def recorded(run: Path, design: int) -> list[Program]:
+    """Programs of all answers after a push."""
+    found: list[Program] = []
+
+    def kept(*program: Array, yielding: int = 0) -> QuadraticSolution:
+        found.append(program)
+        return least_squares(*program, yielding=yielding)
+
+    (test,) = first_hold(run, design).tests(Conditions()).values()
+    controller.least_squares = kept
+    test.pushed(Push(15.0, 0.0))
+    controller.least_squares = least_squares
+    return found
+
+
+def by_daqp(*program: Array) -> Array:
+    """The controller's own."""
+    return least_squares(*program).x
+
+
+def by_quadprog(a: Array, b: Array, c: Array, lower: Array, upper: Array) -> Array:
+    """Goldfarb and Idnani."""
+    import quadprog
+
+    rows, ends = np.vstack([c, -c]), np.concatenate([lower, -upper])
+    there = np.isfinite(ends)
+    return np.asarray(quadprog.solve_qp(a.T @ a, a.T @ b, rows[there].T, ends[there])[0])
+
+
+def by_piqp(a: Array, b: Array, c: Array, lower: Array, upper: Array) -> Array:
+    """A proximal interior point."""
+    import piqp
+
+    solver = piqp.DenseSolver()
+    solver.settings.eps_abs = solver.settings.eps_rel = 1e-9
+    solver.setup(a.T @ a, -(a.T @ b), None, None, c, lower, upper)
+    solver.solve()
+    return np.asarray(solver.result.x)
+
+
+SOLVERS: Mapping[str, Callable[..., Array]] = {"daqp": by_daqp, "quadprog": by_quadprog, "piqp": by_piqp}
+
+
+def solvers(run: Path) -> None:
+    """Print the time of each library, and how far its answers are from DAQP's."""
+    design = next(each.number for each in read_run(run).evaluations if each.assessment.violation == 0.0)
+    programs = recorded(run, design)
+    known = [by_daqp(*program) for program in programs]
+    print(f"{len(programs)} programs of {sorted({program[0].shape[1] for program in programs})} unknowns")
+    for name, solve in SOLVERS.items():
+        if find_spec(name) is None:
+            continue
+        off, spent = [], []
+        for program, answer in zip(programs, known, strict=True):
+            began = time.perf_counter()
+            found = solve(*program)
+            spent.append(1e3 * (time.perf_counter() - began))
+            off.append(np.abs(found - answer).max() / max(1.0, np.abs(answer).max()))
+        print(f"{name}: {np.median(spent):.3f} ms in the median, off by {max(off):.1e} at most")
+
+
+def main() -> None:
+    """Parse and run."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("run", type=Path)
+    parser.add_argument("--designs", type=int, default=10)
+    parser.add_argument("--half", action="store_true")
+    parser.add_argument("--others", action="store_true")
+    parser.add_argument("--solvers", action="store_true")
+    given = parser.parse_args()
+    usual = Timing()
+    conditions = {"as planned": Conditions()}
+    if given.half:
+        conditions["half the step"] = Conditions(timing=replace(usual, step=usual.step / 2.0))
+    if given.others:
+        conditions["friction"] = Conditions(friction=PERTURBED["friction"])
+        conditions["load mass"] = Conditions(mass=PERTURBED["mass"])
+        conditions["sensor delay"] = Conditions(timing=replace(usual, delay=int(PERTURBED["delay"])))
+    if given.solvers:
+        solvers(given.run)
+    if given.designs:
+        designs(given.run, given.designs, conditions)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,271 @@
+"""A whole-body controller: the torques of one agent at one moment, from its state and its part of a plan.
+
+Unknown are the accelerations a of the body and the wrenches f of its feet; torques follow from both,
+
+    tau = M_j a + h_j - J_feet,j' f - J_hands,j' F
+
+Strict are the motion of the root link (the same rows of the equation of motion without a torque), soles that
+stay where they are, friction, centres of pressure (`mechanics.contact`), torque limits, and the ranges of
+joints and their speeds as limits of their accelerations,
+
+    a >= -w^2 (q - q_min) - 2 z w v,     a >= -2 z w (v + v_max),     and likewise above,
+
+so that a joint nears the end of its range like a critically damped oscillator; where no accelerations keep
+all of these, ranges and speeds give way as little as can be. A sole that moves or tilts is brought to rest
+flat on the floor. Within these, least squares of what is wanted, in the masses and inertias that it moves:
+
+    balance   of the centre of mass c, with capture point c + v / w0 and w0 = sqrt(g / height):
+              horizontally  a_plan + w w0 (c_plan - c) + (w + w0) (v_plan - v),  upwards as all below
+    hands     each of n hands carries m/n of the load: a_plan + w^2 (x_plan - x) + 2 z w (v_plan - v), and the
+              wrench F = F_plan - m/n (what the feedback adds), which is an impedance of the load
+    trunk     its turn, likewise
+    posture   joints, likewise
+    wrenches  of the feet, as planned
+
+The order is that of importance: what stands lower counts by `LEVEL` less, but hands count as much as balance.
+One bandwidth w and one damping z set all gains.
+
+Source: Wensing and Orin 2013 (task-space control by quadratic programs); Englsberger, Ott and Albu-Schäffer
+2015 (capture point tracking); Xu, Tabuada, Grizzle and Ames 2015 (exponential barriers).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pinocchio as pin
+import scipy
+from numpy.typing import NDArray
+from scipy.linalg import lapack
+
+from evodesign.control.feedback import Feedback
+from evodesign.control.limits import JointLimits
+from evodesign.control.moving_body import BodyMotion, FrameMotion, MovingBody
+from evodesign.control.quadratic import least_squares
+from evodesign.control.target import Course, Target
+from evodesign.mechanics.balance import GRAVITY
+from evodesign.mechanics.contact import Ground, foot_margins
+from evodesign.mechanics.floating_base import ROOT
+
+Array = NDArray[np.float64]
+
+LEVEL = 0.01
+"""By how much less the next level of importance counts."""
+
+SOLES_FIRST = 3.0
+"""Soles come to rest as much faster than all else: an inner loop is three times as fast as the outer one."""
+
+LOW = 0.01
+"""Height of the centre of mass above the soles [m] that is the least of those who stand or fall."""
+
+DEPENDENT = 1e-8
+"""Rows of strict equations that are dependent to this share are one."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Command:
+    """What a controller answers; v velocities in pinocchio's order, j joints in the agent's.
+
+    Args:
+        torques: of the joints [N m], shape (j,).
+        acceleration: that it expects, shape (v,).
+        feet: wrenches on the feet that it expects, in their sole frames, shape (feet, 6).
+        hands: wrenches on the hands that it expects, in world axes, shape (hands, 6).
+        capture: horizontal distance of the capture point from the planned one [m], shape (2,).
+        reason: why there is no command; empty where there is one, else all above are zero.
+    """
+
+    torques: Array
+    acceleration: Array
+    feet: Array
+    hands: Array
+    capture: Array
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class HandShare:
+    """What each hand moves of the load: mass [kg], and moment of inertia [kg m^2], zero in a point grasp."""
+
+    mass: float
+    inertia: float
+
+
+class WholeBodyController:
+    """Of one agent on feet.
+
+    Args:
+        body: of the agent.
+        ground: under its feet.
+        limits: of its joints, in its order.
+        share: what each of its hands moves; None: its hands hold nothing.
+        feedback: that sets all gains.
+    """
+
+    def __init__(
+        self,
+        body: MovingBody,
+        ground: Ground,
+        limits: JointLimits,
+        share: HandShare | None,
+        feedback: Feedback,
+    ) -> None:
+        self.body, self.limits, self._share, self._gains = body, limits, share, feedback
+        self._soles = replace(feedback, frequency=SOLES_FIRST * feedback.frequency)
+        units = [*np.eye(6), np.zeros(6)]
+        margins = [np.array([foot_margins(e, foot.sole, ground) for e in units]) for foot in body.agent.feet]
+        cones = scipy.linalg.block_diag(*((each[:-1] - each[-1]).T for each in margins))
+        self._limited = np.flatnonzero(np.isfinite(limits.torque))
+        self._bounded = np.flatnonzero(
+            np.isfinite(limits.lower) | np.isfinite(limits.upper) | np.isfinite(limits.speed)
+        )
+        self._least = -np.concatenate([each[-1] for each in margins]) / body.total
+        self._count, self._wrenches = body.size, cones.shape[1]
+        self._bounds = np.zeros(
+            (len(cones) + len(self._limited) + len(self._bounded), body.size + 6 * len(margins))
+        )
+        self._bounds[: len(cones), body.size :] = cones
+        ends = range(len(self._bounds) - len(self._bounded), len(self._bounds))
+        self._bounds[ends, body.rates[self._bounded]] = 1.0
+        self._torque_rows = slice(len(cones), len(cones) + len(self._limited))
+
+    def command(self, q: Array, v: Array, target: Target) -> Command:
+        """The torques at a state.
+
+        Args:
+            q: pinocchio's configuration in the world.
+            v: its velocities.
+            target: at this moment.
+        """
+        body, count, rates = self.body.at(q, v), self._count, self.body.rates
+        hands, added = self._hands(body, target)
+        capture = _capture(body, target)
+        force = body.bias.copy()
+        for hand, wrench in zip(body.hands, hands, strict=True):
+            force -= hand.jacobian.T @ wrench
+        total = self.body.total
+        motion = np.empty((count, count + self._wrenches))
+        motion[:, :count] = body.mass
+        strict, sought = np.zeros((ROOT + self._wrenches, motion.shape[1])), np.empty(ROOT + self._wrenches)
+        for place, foot in zip(range(0, self._wrenches, 6), body.feet, strict=True):
+            motion[:, count + place : count + place + 6] = -total * foot.jacobian.T
+            strict[ROOT + place : ROOT + place + 6, :count] = foot.jacobian
+            sought[ROOT + place : ROOT + place + 6] = self._flattening(foot) - foot.drift
+        strict[:ROOT], sought[:ROOT] = motion[:ROOT] / total, -force[:ROOT] / total
+        origin, free = _solutions(strict, sought)
+        rows, wanted = self._wanted(body, q, target, added)
+        bounds = self._bounds.copy()
+        bounds[self._torque_rows] = motion[rates[self._limited]]
+        lower, upper = self._ends(q, v, force[rates])
+        reached = bounds @ origin
+        program = rows @ free, wanted - rows @ origin
+        limits = bounds @ free, lower - reached, upper - reached
+        found = least_squares(*program, *limits)
+        if found.reason:
+            found = least_squares(*program, *limits, yielding=len(self._bounded))
+        if found.reason:
+            nothing = np.zeros(len(rates)), np.zeros(count), np.zeros((len(body.feet), 6))
+            return Command(
+                *nothing, hands, capture, f"no torques keep {self.body.agent.name}'s limits: {found.reason}"
+            )
+        x = origin + free @ found.x
+        feet = (total * x[count:]).reshape(-1, 6)
+        return Command(motion[rates] @ x + force[rates], x[:count], feet, hands, capture)
+
+    def _flattening(self, sole: FrameMotion) -> Array:
+        """Acceleration that brings a sole to rest, flat on the floor, in its own axes, shape (6,)."""
+        up = sole.turn[2]
+        return self._soles.acceleration(
+            np.array([*(-sole.place[2] * up), -up[1], up[0], 0.0]), -sole.velocity
+        )
+
+    def _hands(self, body: BodyMotion, target: Target) -> tuple[Array, list[Array]]:
+        """Wrenches on the hands, and what the feedback adds to each one's planned acceleration."""
+        if self._share is None:
+            return np.zeros((len(body.hands), 6)), []
+        masses = np.repeat([self._share.mass, self._share.inertia], 3)
+        added = [
+            self._gains.acceleration(_off(course, hand), course.velocity - hand.velocity)
+            for hand, course in zip(body.hands, target.hands, strict=True)
+        ]
+        return target.hand_wrenches - masses * np.array(added).reshape(-1, 6), added
+
+    def _wanted(self, body: BodyMotion, q: Array, target: Target, added: list[Array]) -> tuple[Array, Array]:
+        """Rows A and numbers b of the least squares over accelerations and wrenches per mass."""
+        rates, count, mass = self.body.rates, self._count, self.body.total
+        tasks = list(self._tasks(body, target, added))
+        size = sum(len(numbers) for _, numbers in tasks)
+        wanted, places = [numbers for _, numbers in tasks], self.body.places
+        rows = np.zeros((size + len(rates) + self._wrenches, count + self._wrenches))
+        np.concatenate([task for task, _ in tasks], out=rows[:size, :count])
+        scale = LEVEL * np.sqrt(body.mass[rates, rates])
+        rows[range(size, size + len(rates)), rates] = scale
+        posture = self._gains.acceleration(
+            (target.coordinates - q)[places], (target.velocity - body.velocity)[rates]
+        )
+        wanted.append(scale * (target.acceleration[rates] + posture))
+        scale = LEVEL**1.5 * np.tile(np.repeat([mass**0.5, mass / body.spin**0.5], 3), len(body.feet))
+        rows[range(size + len(rates), len(rows)), range(count, count + self._wrenches)] = scale
+        wanted.append(scale * target.feet_wrenches.ravel() / mass)
+        return rows, np.concatenate(wanted)
+
+    def _tasks(self, body: BodyMotion, target: Target, added: list[Array]) -> Iterator[tuple[Array, Array]]:
+        """Of centre of mass, hands and trunk: rows over accelerations, and numbers."""
+        gains, center, share = self._gains, body.center, self._share
+        own = _pendulum(body)
+        off, slow = target.center.place - center.place, target.center.velocity - center.velocity
+        change = gains.acceleration(off, slow)
+        change[:2] = gains.frequency * own * off[:2] + (gains.frequency + own) * slow[:2]
+        weight = math.sqrt(self.body.total)
+        yield weight * center.jacobian, weight * (target.center.acceleration + change - center.drift)
+        if share is not None:
+            rows = 6 if share.inertia > 0.0 else 3
+            scale = np.sqrt(np.repeat([share.mass, share.inertia], 3))[:rows]
+            for hand, course, more in zip(body.hands, target.hands, added, strict=True):
+                wanted = (course.acceleration + more - hand.drift)[:rows]
+                yield scale[:, None] * hand.jacobian[:rows], scale * wanted
+        trunk, course, weight = body.trunk, target.trunk, math.sqrt(LEVEL * body.spin)
+        turning = gains.acceleration(_off(course, trunk), course.velocity - trunk.velocity)
+        turning += course.acceleration - trunk.drift
+        yield weight * trunk.jacobian[3:], weight * turning[3:]
+
+    def _ends(self, q: Array, v: Array, bias: Array) -> tuple[Array, Array]:
+        """Lower and upper limits of cones, torques, and accelerations of joints."""
+        limits = self.limits
+        torque, bias = limits.torque[self._limited], bias[self._limited]
+        least, most = limits.accelerations(q[self.body.places], v[self.body.rates], self._gains)
+        lower = np.concatenate([self._least, -torque - bias, least[self._bounded]])
+        upper = np.concatenate([np.full(len(self._least), np.inf), torque - bias, most[self._bounded]])
+        return lower, upper
+
+
+def _pendulum(body: BodyMotion) -> float:
+    """Rate w0 at which the centre of mass falls away from above the feet [1/s]."""
+    height = body.center.place[2] - sum(foot.place[2] for foot in body.feet) / len(body.feet)
+    return math.sqrt(GRAVITY / max(height, LOW))
+
+
+def _capture(body: BodyMotion, target: Target) -> Array:
+    """Horizontal distance of the capture point from the planned one [m], shape (2,)."""
+    off, faster = body.center.place - target.center.place, body.center.velocity - target.center.velocity
+    return np.asarray((off + faster / _pendulum(body))[:2])
+
+
+def _off(course: Course, frame: FrameMotion) -> Array:
+    """Place [m] and turn [rad] that are missing to a frame's course, in world axes, shape (6,)."""
+    return np.concatenate([course.place - frame.place, pin.log3(course.turn @ frame.turn.T)])
+
+
+def _solutions(rows: Array, numbers: Array) -> tuple[Array, Array]:
+    """One solution of equations, and an orthonormal basis of what may be added to it, by QR with pivoting."""
+    count, size = rows.shape
+    whole = np.zeros((size, size), order="F")
+    whole[:, :count], order, factors, _, _ = lapack.dgeqp3(rows.T)
+    sizes = np.abs(np.diagonal(whole))[:count]
+    rank = int(np.count_nonzero(sizes > DEPENDENT * sizes[0]))
+    part = lapack.dtrtrs(whole[:rank, :rank], numbers[order[:rank] - 1], trans=1)[0]
+    basis = lapack.dorgqr(whole, factors, overwrite_a=True)[0]
+    return basis[:, :rank] @ part, basis[:, rank:]

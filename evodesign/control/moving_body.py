@@ -1,0 +1,192 @@
+"""An agent in the world as pinocchio sees it while it moves: what its equation of motion needs, at one state.
+
+    M a + h = S' tau + sum over feet J' f + sum over hands J' f
+
+Velocities are pinocchio's: linear and angular velocity of the root link in its own axes, then the speeds of
+the joints, in pinocchio's order. Rotors turn with their joints: their reflected inertia is on M's diagonal.
+
+Source: Featherstone 2008, Rigid Body Dynamics Algorithms, chapters 5, 6 and 9; pinocchio `crba`,
+`nonLinearEffects`, `getFrameJacobian`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from evodesign.mechanics.agent import Agent
+from evodesign.mechanics.floating_base import ROOT, FloatingBody
+from evodesign.tree.equip import actuators_of
+from evodesign.tree.model import Tree
+
+Array = NDArray[np.float64]
+
+LOCAL, ALIGNED = pin.LOCAL, pin.LOCAL_WORLD_ALIGNED
+
+
+@dataclass(frozen=True, slots=True)
+class FrameMotion:
+    """How a frame of the body moves.
+
+    Args:
+        turn: its rotation in the world, shape (3, 3).
+        place: its origin in the world [m], shape (3,).
+        jacobian: of linear and angular velocity, shape (6, v).
+        velocity: [m/s, rad/s], shape (6,).
+        drift: its acceleration where the body's velocities do not change, shape (6,).
+    """
+
+    turn: Array
+    place: Array
+    jacobian: Array
+    velocity: Array
+    drift: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BodyMotion:
+    """A body's equation of motion at one state, v velocities.
+
+    Args:
+        velocity: shape (v,).
+        mass: M, shape (v, v).
+        bias: h, shape (v,).
+        center: centre of mass in the world, with its motion; three rows.
+        spin: mean moment of inertia about the centre of mass, all joints locked [kg m^2].
+        feet: soles in their own axes.
+        hands: in world axes.
+        trunk: in world axes.
+    """
+
+    velocity: Array
+    mass: Array
+    bias: Array
+    center: FrameMotion
+    spin: float
+    feet: tuple[FrameMotion, ...]
+    hands: tuple[FrameMotion, ...]
+    trunk: FrameMotion
+
+
+class MovingBody:
+    """An agent's tree in the world.
+
+    Args:
+        agent: whose it is.
+        tree: of numbers.
+    Attributes:
+        agent: whose it is.
+        total: its mass [kg].
+        places: index in pinocchio's configuration of each joint, in the agent's order, shape (j,).
+        rates: index in pinocchio's velocities of each joint, likewise.
+        rotors: reflected inertia of each velocity's rotor [kg m^2], zero for the root's, shape (v,).
+    """
+
+    def __init__(self, agent: Agent, tree: Tree) -> None:
+        body = FloatingBody.of_tree(tree, agent.joints, np.eye(3))
+        self.agent, self._model, self._data = agent, body.model, body.model.createData()
+        self.total = float(sum(inertia.mass for inertia in body.model.inertias.tolist()))
+        self.places, self.rates = body.places, body.order[ROOT:]
+        frames = body.workspace.frames
+        self._feet = [frames[name] for name in agent.foot_frames]
+        self._hands = [frames[name] for name in agent.hand_frames]
+        self._trunk = frames[agent.pushed_frame]
+        self.rotors = np.zeros(body.model.nv)
+        driven = actuators_of(tree)
+        for joint, rate in zip(agent.joints, self.rates, strict=True):
+            self.rotors[rate] = float(driven[joint].inertia) if joint in driven else 0.0
+
+    @property
+    def size(self) -> int:
+        """Number of velocities v."""
+        return int(self._model.nv)
+
+    def coordinates(self, root: Array, joints: Array) -> Array:
+        """Pinocchio's configuration.
+
+        Args:
+            root: place [m] and quaternion wxyz of the root link in the world, shape (7,).
+            joints: positions [rad], in the agent's order.
+        """
+        q = np.empty(self._model.nq)
+        q[:3], q[3:6], q[6] = root[:3], root[4:7], root[3]
+        q[self.places] = joints
+        return q
+
+    def posed(self, base_position: Array, base_angles: Array, joints: Mapping[str, float]) -> Array:
+        """Pinocchio's configuration of a posture that is given in the agent's frame."""
+        turn = self.agent.turn @ pin.rpy.rpyToMatrix(*base_angles)
+        x, y, z, w = pin.Quaternion(turn).coeffs()
+        root = np.concatenate([self.agent.turn @ base_position, [w, x, y, z]])
+        return self.coordinates(root, np.array([joints[name] for name in self.agent.joints]))
+
+    def inverse_dynamics(self, q: Array, v: Array, acceleration: Array, feet: Array, hands: Array) -> Array:
+        """Forces that a motion takes beside those of feet and hands, by pinocchio's RNEA, shape (v,).
+
+        Args:
+            q: configuration.
+            v: velocity.
+            acceleration: of the velocities, shape (v,).
+            feet: wrenches on the feet in their sole frames, shape (feet, 6).
+            hands: wrenches on the hands in world axes about their origins, shape (hands, 6).
+        """
+        model, data = self._model, self._data
+        pin.framesForwardKinematics(model, data, q)
+        outer = [pin.Force.Zero() for _ in range(model.njoints)]
+        for frame, wrench in [*zip(self._feet, feet, strict=True), *zip(self._hands, hands, strict=True)]:
+            placed, carrier = model.frames[frame].placement, model.frames[frame].parentJoint
+            if frame in self._hands:
+                turn = data.oMf[frame].rotation.T
+                wrench = np.concatenate([turn @ wrench[:3], turn @ wrench[3:]])
+            outer[carrier] = outer[carrier] + placed.act(pin.Force(wrench))
+        vector = pin.StdVec_Force()
+        vector.extend(outer)
+        return np.array(pin.rnea(model, data, q, v, acceleration, vector)) + self.rotors * acceleration
+
+    def at(self, q: Array, v: Array) -> BodyMotion:
+        """What the equation of motion needs at a state."""
+        model, data = self._model, self._data
+        still = np.zeros(model.nv)
+        mass = np.array(pin.crba(model, data, q))
+        mass[np.diag_indices_from(mass)] += self.rotors
+        bias = np.array(pin.nonLinearEffects(model, data, q, v))
+        pin.ccrba(model, data, q, v)
+        spin = float(np.trace(data.Ig.inertia)) / 3.0
+        to_center = np.array(pin.jacobianCenterOfMass(model, data, q))
+        pin.centerOfMass(model, data, q, v, still)
+        center = FrameMotion(
+            np.eye(3), np.array(data.com[0]), to_center, np.array(data.vcom[0]), np.array(data.acom[0])
+        )
+        pin.computeJointJacobians(model, data, q)
+        pin.forwardKinematics(model, data, q, v, still)
+        return BodyMotion(
+            velocity=v,
+            mass=mass,
+            bias=bias,
+            center=center,
+            spin=spin,
+            feet=tuple(self._frame(foot, LOCAL) for foot in self._feet),
+            hands=tuple(self._frame(hand, ALIGNED) for hand in self._hands),
+            trunk=self._frame(self._trunk, ALIGNED),
+        )
+
+    def _frame(self, frame: int, axes: object) -> FrameMotion:
+        model, data = self._model, self._data
+        pose = pin.updateFramePlacement(model, data, frame)
+        velocity = pin.getFrameVelocity(model, data, frame, axes).vector
+        drift = (
+            pin.getFrameAcceleration(model, data, frame, axes)
+            if axes is LOCAL
+            else pin.getFrameClassicalAcceleration(model, data, frame, axes)
+        ).vector
+        return FrameMotion(
+            np.array(pose.rotation),
+            np.array(pose.translation),
+            np.array(pin.getFrameJacobian(model, data, frame, axes)),
+            np.array(velocity),
+            np.array(drift),
+        )

@@ -1,0 +1,212 @@
+"""A push on somebody's trunk, and what comes of it: who falls, where the load goes, which limits break.
+
+A push is a horizontal force on the trunk's centre of mass. A simulation ends when somebody
+falls, the load is too far off, a limit is broken for too long, or all have recovered.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from evodesign.control.controller import Command
+from evodesign.control.limits import WATCHED_SECONDS
+from evodesign.posture.results import Array
+from evodesign.simulation.controlled import ControlledScene, Snapshot
+from evodesign.simulation.outcome import FALLEN
+from evodesign.simulation.rollout import FRAME
+
+PUSH_SECONDS = 0.1
+"""How long a push lasts [s], unless another time is said."""
+
+LOAD_OFF = 0.1
+"""How far the load may be from its path [m]."""
+
+BROKEN_SECONDS = 0.05
+"""How long a limit may be broken [s]."""
+
+RECOVERED = 0.01
+"""Nearer than this to the plan are capture points and load after a recovery [m]."""
+
+CALM_SECONDS = 0.2
+"""For which that lasts [s]."""
+
+BEYOND = math.radians(2.0)
+"""By which a joint may push its stop in [rad]."""
+
+EXPLODED = 300.0
+"""A speed of a joint [rad/s] that nobody's is: the simulation explodes."""
+
+
+@dataclass(frozen=True, slots=True)
+class Push:
+    """On an agent's trunk.
+
+    Args:
+        impulse: [N s].
+        direction: to which it pushes, from the agent's forward direction to its left [rad].
+        agent: its name.
+        seconds: how long it lasts [s].
+    """
+
+    impulse: float
+    direction: float
+    agent: str = "robot"
+    seconds: float = PUSH_SECONDS
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PushOutcome:
+    """What came of a push.
+
+    Args:
+        push: that was given.
+        reason: why it was not survived, a sentence; empty where it was.
+        seconds: from the push to the end of the simulation [s].
+        recovery: from the push until capture points and load are back for good [s]; None: never.
+        load_off: largest distance of the load from its path [m].
+        saturation: share of the time in which a motor of the pushed agent is at its limit [1].
+        capture: largest distance of the pushed agent's capture point from the planned one [m].
+        states: MuJoCo's `qpos` at frames, shape (f, q); none unless they were asked for.
+        forces: the push at frames, in the world [N], shape (f, 3), likewise.
+    """
+
+    push: Push
+    reason: str
+    seconds: float
+    recovery: float | None
+    load_off: float
+    saturation: float
+    capture: float
+    states: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    forces: Array = field(default_factory=lambda: np.zeros((0, 3)))
+
+    @property
+    def survived(self) -> bool:
+        """Whether nobody fell, the load stayed near its path and limits were kept."""
+        return not self.reason
+
+
+class PushTest:
+    """Pushes at one moment of a plan.
+
+    Args:
+        scene: with its controllers.
+        path: height of the load's centre at each answer [m], the last one from then on; None without a load.
+        moment: of the pushes.
+    """
+
+    def __init__(self, scene: ControlledScene, path: Array | None, moment: Snapshot) -> None:
+        self.scene, self._path, self._moment = scene, path, moment
+
+    def pushed(self, push: Push, frames: bool = False) -> PushOutcome:
+        """What comes of a push.
+
+        Args:
+            push: on one of the agents.
+            frames: whether states are kept.
+        """
+        scene = self.scene
+        scene.restore(self._moment)
+        agent = scene.controllers[push.agent].body.agent
+        angle = agent.facing + push.direction
+        force = push.impulse / push.seconds * np.array([math.cos(angle), math.sin(angle), 0.0])
+        watched = _Watched(scene, push.agent)
+        states, forces, every = [], [], max(1, round(FRAME / scene.timing.step))
+        lasting = round(push.seconds / scene.timing.step)
+        for number in range(round(WATCHED_SECONDS / scene.timing.step)):
+            now = force if number < lasting else np.zeros(3)
+            scene.push(push.agent, agent.pushed_frame, now)
+            if frames and number % every == 0:
+                states.append(np.array(scene.found.data.qpos))
+                forces.append(now)
+            watched.saw(scene.advance(), self.load_off())
+            if watched.reason or (number >= lasting and watched.calm):
+                break
+        return PushOutcome(
+            push=push,
+            reason=watched.reason,
+            seconds=watched.seconds,
+            recovery=watched.last if watched.calm and not watched.reason else None,
+            load_off=watched.load_off,
+            saturation=watched.saturated / watched.seconds,
+            capture=watched.capture,
+            states=np.array(states),
+            forces=np.array(forces).reshape(-1, 3),
+        )
+
+    def load_off(self) -> float:
+        """Distance of the load from its path now [m]."""
+        if self._path is None:
+            return 0.0
+        place = self.scene.found.data.xpos[self.scene.found.load]
+        height = self._path[min(self.scene.number, len(self._path) - 1)]
+        return float(np.linalg.norm(place - [0.0, 0.0, height]))
+
+
+class _Watched:
+    """What has been seen since a push.
+
+    Attributes:
+        seconds: since the push [s].
+        last: when capture points or load were off last [s].
+        reason: why the push is not survived.
+        load_off, capture: largest so far [m].
+        saturated: for how long [s].
+    """
+
+    def __init__(self, scene: ControlledScene, pushed: str) -> None:
+        self._scene, self._pushed = scene, pushed
+        self.seconds = self.last = self.load_off = self.capture = self.saturated = 0.0
+        self.reason = ""
+        self._broken: dict[str, float] = {}
+
+    @property
+    def calm(self) -> bool:
+        """Whether all have been back for long enough."""
+        return self.seconds - self.last >= CALM_SECONDS
+
+    def saw(self, commands: Mapping[str, Command], load_off: float) -> None:
+        """Another answer of the controllers, and where everything is after it."""
+        scene, step = self._scene, self._scene.timing.step
+        self.seconds += step
+        data, targets = scene.found.data, scene.targets()
+        if not (np.isfinite(data.qpos).all() and np.abs(data.qvel).max() < EXPLODED):
+            self.reason = "the simulation explodes"
+            return
+        self.load_off = max(self.load_off, load_off)
+        if load_off > LOAD_OFF:
+            self.reason = f"the load is more than {100 * LOAD_OFF:g} cm off its path"
+        off = {name: float(np.linalg.norm(each.capture)) for name, each in commands.items()}
+        self.capture = max(self.capture, off[self._pushed])
+        if max(*off.values(), load_off) > RECOVERED:
+            self.last = self.seconds
+        for name in scene.controllers:
+            root = data.xpos[scene.found.agents[name].root]
+            if np.linalg.norm(root - targets[name].coordinates[:3]) > FALLEN:
+                self.reason = f"{name} falls"
+        broken = {what for name, each in commands.items() for what in self._broken_by(name, each)}
+        self._broken = {what: self._broken.get(what, 0.0) + step for what in sorted(broken)}
+        lasting = next(
+            (what for what, time in self._broken.items() if time > BROKEN_SECONDS + step / 2), None
+        )
+        self.reason = self.reason or lasting or ""
+        torques, limits = commands[self._pushed].torques, scene.controllers[self._pushed].limits.torque
+        if (np.abs(torques) >= (1.0 - 1e-6) * limits).any():
+            self.saturated += step
+
+    def _broken_by(self, name: str, command: Command) -> Iterator[str]:
+        """Sentences about limits of an agent that are broken now."""
+        if command.reason:
+            yield command.reason
+        controller, (q, v) = self._scene.controllers[name], self._scene.state(name)
+        limits, joints = controller.limits, controller.body.agent.joints
+        positions, speeds = q[controller.body.places], v[controller.body.rates]
+        beyond = np.maximum(limits.lower - positions, positions - limits.upper) > BEYOND
+        for place in np.flatnonzero(beyond):
+            yield f"{name}'s {joints[place]} is beyond its range"
+        for place in np.flatnonzero(np.abs(speeds) > 1.01 * limits.speed):
+            yield f"{name}'s {joints[place]} is faster than it can be"

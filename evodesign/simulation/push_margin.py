@@ -1,0 +1,111 @@
+"""The largest push that is survived, in each of eight directions or in the weakest of them.
+
+Bisection between an impulse that is survived and one that is not; who survives an impulse is taken to survive
+every smaller one. For the weakest direction alone every other one is only tried at the least margin so far,
+and bisected where it fails there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from evodesign.simulation.push import Push, PushOutcome, PushTest
+
+DIRECTIONS = tuple(math.radians(each) for each in (180.0, 0.0, 90.0, 270.0, 135.0, 225.0, 45.0, 315.0))
+"""Of pushes, from forwards to the left [rad]: the weaker ones of most robots first."""
+
+RESOLUTION = 0.02
+"""Of a margin, relative."""
+
+SMALLEST = 0.1
+"""An impulse [N s]: who does not survive it has no margin."""
+
+FIRST, FASTEST = 0.2, 3.2
+"""Impulses per mass [m/s] that are tried first and at most."""
+
+
+@dataclass(frozen=True, slots=True)
+class Margin:
+    """The largest push that is survived, to within `RESOLUTION`.
+
+    Args:
+        moment: name of the moment of the plan.
+        direction: from forwards to the left [rad].
+        impulse: that is survived [N s].
+        reason: why a slightly larger one is not; empty where the largest that was tried is survived.
+        trials: simulations that it took.
+    """
+
+    moment: str
+    direction: float
+    impulse: float
+    reason: str
+    trials: int
+
+
+def margin_in(
+    tests: PushTest,
+    moment: str,
+    push: Push,
+    mass: float,
+    most: float = math.inf,
+    resolution: float | None = None,
+) -> Margin:
+    """The margin in one direction.
+
+    Args:
+        tests: of one moment.
+        moment: its name.
+        push: of any impulse: who is pushed, where to and for how long.
+        mass: of the agent [kg].
+        most: an impulse of which no more is asked [N s].
+        resolution: of the margin, relative; None: `RESOLUTION`.
+    """
+    outcomes: dict[float, PushOutcome] = {}
+
+    def fails(impulse: float) -> bool:
+        outcomes[impulse] = tests.pushed(replace(push, impulse=impulse))
+        return not outcomes[impulse].survived
+
+    low, high = 0.0, min(FIRST * mass, most) if math.isinf(most) else most
+    while not fails(high):
+        low = high
+        if high >= min(most, FASTEST * mass):
+            return Margin(moment, push.direction, high, "", len(outcomes))
+        high = min(2.0 * high, most, FASTEST * mass)
+    while high - low > max((resolution or RESOLUTION) * high, SMALLEST):
+        middle = (low + high) / 2.0
+        low, high = (low, middle) if fails(middle) else (middle, high)
+    return Margin(moment, push.direction, low, outcomes[high].reason, len(outcomes))
+
+
+def margins(
+    tests: Mapping[str, PushTest], agent: str, mass: float, directions: Sequence[float] = DIRECTIONS
+) -> tuple[Margin, ...]:
+    """The margin in every direction at every moment; arguments as `margin_in`."""
+    return tuple(
+        margin_in(test, name, Push(0.0, direction, agent), mass)
+        for name, test in tests.items()
+        for direction in directions
+    )
+
+
+def least_margin(
+    tests: Mapping[str, PushTest], agent: str, mass: float, directions: Sequence[float] = DIRECTIONS
+) -> Margin | None:
+    """The smallest of them, without finding the others; None without moments."""
+    least, trials = None, 0
+    for name, test in tests.items():
+        for direction in directions:
+            most = math.inf if least is None else least.impulse
+            found = margin_in(test, name, Push(0.0, direction, agent), mass, most)
+            trials += found.trials
+            if least is None or found.impulse < most:
+                least = found
+            if least.impulse <= 0.0:
+                break
+    return (
+        None if least is None else Margin(least.moment, least.direction, least.impulse, least.reason, trials)
+    )

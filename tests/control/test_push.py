@@ -1,0 +1,97 @@
+"""Pushes against closed forms, and what ends a simulation."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from evodesign.control.feedback import Feedback
+from evodesign.simulation.controlled import Timing
+from evodesign.simulation.push import Push, PushOutcome, PushTest
+from evodesign.simulation.push_margin import least_margin, margin_in, margins
+from evodesign.simulation.pushed_plan import Conditions, alone_test, hold_test
+from tests.control.pendulum import Pendulum
+from tests.simulation.conftest import HEIGHT, Held
+
+
+@pytest.mark.parametrize(
+    "pendulum", [Pendulum(0.16), Pendulum(0.24), Pendulum(0.24, 20.0), Pendulum(0.24, 40.0)], ids=str
+)
+def test_a_pendulum_survives_until_its_capture_point_leaves_the_sole(pendulum: Pendulum) -> None:
+    """The largest impulse is the closed form's within 5 %, so it grows with sole and torque as that does."""
+    tests, impulse = pendulum.test(), pendulum.survived()
+    pushed = [tests.pushed(Push(share * impulse, 0.0, seconds=0.02)) for share in (0.95, 1.05)]
+    assert [each.survived for each in pushed] == [True, False]
+    assert pushed[1].reason == "robot falls"
+    assert pushed[0].recovery is not None
+    assert 0.0 < pushed[0].recovery < pushed[0].seconds
+
+
+class Straight(PushTest):
+    """Survives what is below an impulse that depends on the direction alone."""
+
+    def __init__(self) -> None:
+        self.tried: list[Push] = []
+
+    def limit(self, direction: float) -> float:
+        return 10.0 - 4.0 * math.cos(direction - 0.5)
+
+    def pushed(self, push: Push, frames: bool = False) -> PushOutcome:
+        self.tried.append(push)
+        reason = "" if push.impulse < self.limit(push.direction) else "robot falls"
+        return PushOutcome(push, reason, 1.0, None, 0.0, 0.0, 0.0)
+
+
+def test_bisection_finds_the_limit_in_each_direction_and_the_least_with_fewer_trials() -> None:
+    every, least = Straight(), Straight()
+    found = margins({"hold": every}, "robot", 30.0)
+    assert len(found) == 8
+    for margin in found:
+        assert every.limit(margin.direction) * 0.975 < margin.impulse <= every.limit(margin.direction)
+        assert margin.reason == "robot falls"
+    weakest = least_margin({"hold": least}, "robot", 30.0)
+    assert weakest is not None
+    limits = [least.limit(each.direction) for each in found]
+    assert 0.975 * min(limits) < weakest.impulse <= min(limits)
+    assert weakest.trials == len(least.tried) < len(every.tried) / 2
+    assert least_margin({}, "robot", 30.0) is None
+    assert margin_in(least, "hold", Push(0.0, 0.0), 30.0, most=2.0).impulse == 2.0
+
+
+@pytest.fixture(scope="module")
+def pushed_hold(held: Held) -> PushTest:
+    return hold_test(held.scene, held.trees, held.solution.postures, HEIGHT, Conditions())
+
+
+def test_a_push_is_survived_or_not_and_told_alike_each_time(pushed_hold: PushTest) -> None:
+    weak, strong, again = (pushed_hold.pushed(Push(each, 0.0)) for each in (8.0, 80.0, 8.0))
+    assert weak.survived
+    assert weak.recovery is not None
+    assert 0.0 < weak.load_off < 0.1
+    fields = ("seconds", "recovery", "load_off", "saturation", "capture")
+    assert [getattr(again, each) for each in fields] == [getattr(weak, each) for each in fields]
+    assert not strong.survived
+    assert np.isfinite([strong.seconds, strong.load_off, strong.capture]).all()
+
+
+def test_late_sensors_and_another_load_change_what_a_push_does(held: Held, pushed_hold: PushTest) -> None:
+    known = pushed_hold.pushed(Push(8.0, math.pi))
+    for conditions in (Conditions(timing=Timing(delay=2)), Conditions(mass=1.05)):
+        changed = hold_test(held.scene, held.trees, held.solution.postures, HEIGHT, conditions)
+        assert changed.pushed(Push(8.0, math.pi)).capture != known.capture
+
+
+def test_a_robot_alone_stands_above_its_soles_and_is_pushed(held: Held) -> None:
+    alone = alone_test(held.scene, held.trees, held.solution.postures, Conditions())
+    outcome = alone.pushed(Push(5.0, 0.0))
+    assert outcome.survived
+    assert outcome.load_off == 0.0
+
+
+def test_a_controller_too_slow_to_stand_says_who_falls(held: Held) -> None:
+    slow = Conditions(Feedback(0.05, 0.05))
+    outcome = hold_test(held.scene, held.trees, held.solution.postures, HEIGHT, slow).pushed(Push(20.0, 0.0))
+    assert not outcome.survived
+    assert outcome.reason
