@@ -71,8 +71,8 @@ def simulate(
     if push is not None:
         from evodesign.cli.push import push_once
 
-        which = (height or (), person, payload)
-        push_once(run, design, (push, direction), which, (frequency, damping), jobs, video, json=json)
+        where = (height or (), person, payload)
+        push_once(run, design, (push, direction), where, (frequency, damping), jobs, video, json=json)
         return
     if (begin is None) != (end is None):
         raise InputError("--from", "", "both --from and --to, or neither", "one of them")

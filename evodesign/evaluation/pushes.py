@@ -19,7 +19,7 @@ from evodesign.simulation.push_margin import Margin, margin_in, margins
 from evodesign.simulation.pushed_plan import Conditions, alone_test, hold_test, lift_tests
 from evodesign.tree.model import Tree
 
-PERTURBED = {"friction": 0.8, "mass": 1.05, "delay": 2}
+PERTURBED = {"friction": 0.8, "mass": 1.05, "delay": 1}
 """What may be otherwise: friction and the load's mass by these factors, sensors late by so many answers."""
 
 

@@ -50,8 +50,8 @@ class Timing:
         delay: answers after which a state is seen.
     """
 
-    step: float = 2e-3
-    substeps: int = 4
+    step: float = 4e-3
+    substeps: int = 8
     delay: int = 0
 
 

@@ -82,23 +82,23 @@ def margin_in(
 
 
 def margins(
-    tests: Mapping[str, PushTest], agent: str, mass: float, directions: Sequence[float] = DIRECTIONS
+    tests: Mapping[str, PushTest], agent: str, mass: float, directions: Sequence[float] = ()
 ) -> tuple[Margin, ...]:
     """The margin in every direction at every moment; arguments as `margin_in`."""
     return tuple(
         margin_in(test, name, Push(0.0, direction, agent), mass)
         for name, test in tests.items()
-        for direction in directions
+        for direction in directions or DIRECTIONS
     )
 
 
 def least_margin(
-    tests: Mapping[str, PushTest], agent: str, mass: float, directions: Sequence[float] = DIRECTIONS
+    tests: Mapping[str, PushTest], agent: str, mass: float, directions: Sequence[float] = ()
 ) -> Margin | None:
     """The smallest of them, without finding the others; None without moments."""
     least, trials = None, 0
     for name, test in tests.items():
-        for direction in directions:
+        for direction in directions or DIRECTIONS:
             most = math.inf if least is None else least.impulse
             found = margin_in(test, name, Push(0.0, direction, agent), mass, most)
             trials += found.trials

@@ -48,7 +48,7 @@ class Pendulum:
         upright = AgentPosture(
             np.array([0.0, 0.0, HEIGHT]), np.zeros(3), {"ankle": 0.0}, {"ankle": 0.0}, {"foot": weight}
         )
-        conditions = Conditions(timing=timing or Timing())
+        conditions = Conditions(timing=timing or Timing(2e-3, 4))
         return alone_test(scene, {"robot": scene.robot.tree}, {"robot": upright}, conditions)
 
     def survived(self) -> float:

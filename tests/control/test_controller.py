@@ -43,7 +43,7 @@ def test_after_a_push_torques_give_the_accelerations_within_all_limits(
     """Pinocchio's inverse dynamics at the states that MuJoCo comes through, every 10 ms."""
     held = held_with(grasp)
     scene = limited(held)
-    found, saturated = controlled(held, scene, Timing(step=4e-3)), 0
+    found, saturated = controlled(held, scene, Timing()), 0
     for number in range(60):
         found.push("robot", scene.robot.pushed_frame, np.array([-120.0 if number < 25 else 0.0, 60.0, 0.0]))
         states = {name: found.state(name) for name in found.controllers}
@@ -100,7 +100,7 @@ def test_a_hold_without_a_push_is_the_static_plan(held_with: Callable[[Grasp], H
     floor gives way by a hundredth of a millimetre.
     """
     held = held_with(grasp)
-    found = controlled(held, held.scene, Timing(step=4e-3, substeps=32))
+    found = controlled(held, held.scene, Timing(substeps=32))
     for share, after in ((1e-5, 1), (0.02, 125)):
         commands: dict[str, Command] = {}
         while found.number < after:

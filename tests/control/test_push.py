@@ -78,7 +78,7 @@ def test_a_push_is_survived_or_not_and_told_alike_each_time(pushed_hold: PushTes
 
 def test_late_sensors_and_another_load_change_what_a_push_does(held: Held, pushed_hold: PushTest) -> None:
     known = pushed_hold.pushed(Push(8.0, math.pi))
-    for conditions in (Conditions(timing=Timing(delay=2)), Conditions(mass=1.05)):
+    for conditions in (Conditions(timing=Timing(delay=1)), Conditions(mass=1.05)):
         changed = hold_test(held.scene, held.trees, held.solution.postures, HEIGHT, conditions)
         assert changed.pushed(Push(8.0, math.pi)).capture != known.capture
 
