@@ -113,10 +113,15 @@ def pair_of_changes(
         axes[other] = rotate(transpose(turn(other)), image)
     if quantity is JointQuantity.TILT:
         return tuple(JointChange(name, quantity, each) for name, each in axes.items())
-    return tuple(
-        JointChange(name, quantity, each, solids=_solids_ending_at(tree, tree.joint_by_name[name], each))
-        for name, each in axes.items()
-    )
+    longer: set[tuple[str, int, float]] = set()  # what ends at both joints at one end gets longer once
+    changes = []
+    for name, axis in axes.items():
+        joint, way = tree.joint_by_name[name], math.copysign(1.0, dot(axis, own))
+        ending = _solids_ending_at(tree, joint, axis)
+        solids = tuple(each for each in ending if (joint.parent, each[0], way * each[1]) not in longer)
+        longer |= {(joint.parent, number, way * away) for number, away in solids}
+        changes.append(JointChange(name, quantity, axis, solids=solids))
+    return tuple(changes)
 
 
 def _other_limit(tree: Tree, first: str, other: str, quantity: JointQuantity) -> JointChange:

@@ -95,6 +95,29 @@ def test_a_box_that_ends_at_the_joint_gets_as_much_longer_and_heavier(tree: Tree
         assert longer == parent
 
 
+def test_a_box_that_ends_at_both_joints_of_a_pair_gets_longer_once(tree: Tree) -> None:
+    """Shoulders that move up raise the chest's top as much; its mass grows by that share of its height."""
+    shoulders = ("l_shoulder_pitch", "r_shoulder_pitch")
+    changes = pair_of_changes(tree, shoulders, JointQuantity.OFFSET, (0.0, 0.0, 1.0))
+    parent = tree.joint_by_name[shoulders[0]].parent
+    for rise in (0.03, -0.02):
+        moved = with_changes(tree, [(change, rise) for change in changes])
+        (before,), (after,) = (each.link_by_name[parent].solids for each in (tree, moved))
+        height = before.shape.sides[2]
+        assert after.shape.sides == pytest.approx((*before.shape.sides[:2], height + rise))
+        assert after.link_from_solid.translation[2] - before.link_from_solid.translation[2] == pytest.approx(
+            rise / 2
+        )
+        assert moved.link_by_name[parent].mass / tree.link_by_name[parent].mass == pytest.approx(
+            1 + rise / height
+        )
+        for joint in shoulders:
+            there = moved.joint_by_name[joint].parent_from_child.translation
+            assert there[2] - tree.joint_by_name[joint].parent_from_child.translation[2] == pytest.approx(
+                rise
+            )
+
+
 def test_a_tilt_turns_the_axis_and_leaves_the_zero_posture(tree: Tree) -> None:
     angle = math.radians(15.0)
     changes = pair_of_changes(tree, HIPS, JointQuantity.TILT, (0.0, 0.0, 1.0))
