@@ -72,8 +72,8 @@ def _kind(value: Any) -> str:
             return "name"
         return " or ".join(sorted(map(_kind, value["anyOf"]), reverse=True))
     if value["type"] == "array":
-        count = len(value.get("prefixItems", ()))
-        inner = _kind(value["prefixItems"][0] if count else value["items"])
+        count = _count(value)
+        inner = _kind(value["items"])
         many = f"{inner}s" if inner in ("table", "number", "name") else f"({inner})"
         return f"{count} {many}" if count else f"list of {many}"
     if value["type"] == "object":
@@ -82,12 +82,17 @@ def _kind(value: Any) -> str:
     return "name" if value.get("minLength") else KINDS[value["type"]]
 
 
+def _count(value: Any) -> int:
+    """How many values a list has; 0 where that is free."""
+    least, most = value.get("minItems"), value.get("maxItems")
+    return least if least and least == most else 0
+
+
 def _range(value: Any) -> str:
     """The bounds of a number, of the numbers in a list, and of the list's length."""
     inner = next((value[key] for key in ("items", "additionalProperties") if value.get(key)), None)
-    inner = value["prefixItems"][0] if "prefixItems" in value else inner
     own = [f"{sign} {value[bound]:g}" for bound, sign in BOUNDS.items() if bound in value]
-    if "prefixItems" not in value:
+    if not _count(value):
         least, most = value.get("minItems"), value.get("maxItems")
         own += [f"at least {least}"] if least else []
         own += [f"at most {most}"] if most else []

@@ -183,6 +183,8 @@ def _without_null(value: Any) -> Any:
     if "anyOf" in kept:
         kinds = [each for each in kept.pop("anyOf") if each != {"type": "null"}]
         kept = {**(kinds[0] if len(kinds) == 1 else {"anyOf": kinds}), **kept}
+    if places := kept.pop("prefixItems", None):  # which Taplo does not know; all places are alike
+        kept["items"] = places[0]
     if kept.get("type") == "string" and "minLength" in kept:
         kept["not"] = {"const": FILL_IN}
     return kept

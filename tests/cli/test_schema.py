@@ -11,6 +11,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 from jsonschema import Draft202012Validator
@@ -189,6 +190,16 @@ def test_every_key_says_what_it_does_and_every_text_has_a_key() -> None:
         said = re.findall(r"^ {8}(\w+): ", (table.__doc__ or "").partition("Attributes:")[2], re.MULTILINE)
         assert [key.name for key in found] == said
         assert all(len(key.text) > 3 and key.since in ("", "0.3") for key in found)
+
+
+def test_places_of_lists_of_fixed_length_are_alike() -> None:
+    """The schema says once what each is, for Taplo."""
+    text = msgspec.json.encode(msgspec.json.schema(ProblemFile)).decode()
+    lists: list[Any] = []
+    json.loads(text, object_hook=lambda found: lists.append(found.get("prefixItems", [])) or found)
+    fixed = [places for places in lists if places]
+    assert len(fixed) > 10
+    assert [places for places in fixed if any(place != places[0] for place in places)] == []
 
 
 def test_every_quantity_has_a_meaning() -> None:
