@@ -23,7 +23,7 @@ SHOWN = (0.2, 0.02, 0.6, 0.97)
 
 WITHOUT_BUTTONS = """
 [...document.querySelectorAll('#card button')]
-  .filter((button) => ['Oblique', 'Side', 'Behind robot'].includes(button.textContent))
+  .filter((button) => ['Oblique', 'Side', "Robot's front", "Person's front"].includes(button.textContent))
   .forEach((button) => (button.style.visibility = 'hidden'));
 """
 """Hides what stands before the tallest robots."""

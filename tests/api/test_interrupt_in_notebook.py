@@ -74,7 +74,7 @@ def test_the_stop_button_leaves_a_run_that_the_next_cell_resumes(
     wait_for_line(client, "one")
     manager.interrupt_kernel()
     stopped = error_of(client, request)
-    assert stopped["ename"] == "Interrupted"
+    assert stopped["ename"] == "Interrupted", "\n".join(stopped["traceback"])
     assert f"evodesign resume {place}" in stopped["evalue"]
     known = len(read_run(place).evaluations)
     assert 1 <= known < 400
