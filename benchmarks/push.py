@@ -25,26 +25,26 @@ from numpy.typing import NDArray
 import evodesign.control.controller as controller
 from evodesign.control.quadratic import QuadraticSolution, least_squares
 from evodesign.evaluation.progress import SILENT
-from evodesign.evaluation.pushes import PERTURBED, Pushed
+from evodesign.evaluation.pushes import PERTURBED, PushedDesign
 from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.report.opened_design import open_design
 from evodesign.runlog.run import read_run
 from evodesign.simulation.controlled import Timing
 from evodesign.simulation.push import Push
 from evodesign.simulation.push_margin import Margin, least_margin
-from evodesign.simulation.pushed_plan import Conditions
+from evodesign.simulation.pushed_plan import PushConditions
 
 Array = NDArray[np.float64]
 Program = tuple[Array, Array, Array, Array, Array]
 
 
-def first_hold(run: Path, design: int) -> Pushed:
+def first_hold(run: Path, design: int) -> PushedDesign:
     """Where the robot of a design is pushed."""
     opened = open_design(read_run(run), design, 1, SILENT)
-    return Pushed(opened.rebuilt.problem.scenes, opened.scene_set().robot, opened.cases[:1])
+    return PushedDesign(opened.rebuilt.problem.scenes, opened.scene_set().robot, opened.cases[:1])
 
 
-def margin(pushed: Pushed, conditions: Conditions) -> tuple[Margin, float]:
+def margin(pushed: PushedDesign, conditions: PushConditions) -> tuple[Margin, float]:
     """The least one, and the processor time that it takes [s]."""
     began = time.process_time()
     found = least_margin(pushed.tests(conditions), ROBOT, pushed.mass())
@@ -52,14 +52,14 @@ def margin(pushed: Pushed, conditions: Conditions) -> tuple[Margin, float]:
     return found, time.process_time() - began
 
 
-def designs(run: Path, count: int, conditions: Mapping[str, Conditions]) -> None:
+def designs(run: Path, count: int, conditions: Mapping[str, PushConditions]) -> None:
     """Print each design's margins, and how rankings agree."""
     log, rows = read_run(run), []
     feasible = [each for each in log.evaluations if each.assessment.violation == 0.0][:count]
     for each in feasible:
         pushed = first_hold(run, each.number)
         found = {name: margin(pushed, other) for name, other in conditions.items()}
-        alone, spent = margin(replace(pushed, alone=True), Conditions())
+        alone, spent = margin(replace(pushed, alone=True), PushConditions())
         torques = dict.fromkeys((ROBOT, HUMAN), 0.0)
         for role in torques:
             agents = [own for name, own in pushed.holds[0].agents.items() if name.startswith(role)]
@@ -86,7 +86,7 @@ def recorded(run: Path, design: int) -> list[Program]:
         found.append(program)
         return least_squares(*program, yielding=yielding)
 
-    (test,) = first_hold(run, design).tests(Conditions()).values()
+    (test,) = first_hold(run, design).tests(PushConditions()).values()
     controller.least_squares = kept
     test.pushed(Push(15.0, 0.0))
     controller.least_squares = least_squares
@@ -149,13 +149,13 @@ def main() -> None:
     parser.add_argument("--solvers", action="store_true")
     given = parser.parse_args()
     usual = Timing()
-    conditions = {"as planned": Conditions()}
+    conditions = {"as planned": PushConditions()}
     if given.half:
-        conditions["half the step"] = Conditions(timing=replace(usual, step=usual.step / 2.0))
+        conditions["half the step"] = PushConditions(timing=replace(usual, step=usual.step / 2.0))
     if given.others:
-        conditions["friction"] = Conditions(friction=PERTURBED["friction"])
-        conditions["load mass"] = Conditions(mass=PERTURBED["mass"])
-        conditions["sensor delay"] = Conditions(timing=replace(usual, delay=int(PERTURBED["delay"])))
+        conditions["friction"] = PushConditions(friction=PERTURBED["friction"])
+        conditions["load mass"] = PushConditions(mass=PERTURBED["mass"])
+        conditions["sensor delay"] = PushConditions(timing=replace(usual, delay=int(PERTURBED["delay"])))
     if given.solvers:
         solvers(given.run)
     if given.designs:

@@ -20,7 +20,7 @@ from typing import Any
 import evodesign
 from benchmarks.inner_problem import HERE
 from evodesign.analysis.front import front
-from evodesign.control.feedback import Feedback
+from evodesign.control.gains import Feedback
 from evodesign.evaluation.factory import evaluator_of
 from evodesign.evaluation.lifts import Lifts
 from evodesign.evaluation.progress import SILENT

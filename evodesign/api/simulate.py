@@ -51,7 +51,7 @@ def simulate(
         [('short, 0.8 m', True, True), ('tall, 0.8 m', True, True)]
     """
     refuse_without_mujoco()
-    from evodesign.control.feedback import Feedback
+    from evodesign.control.gains import Feedback
     from evodesign.evaluation.simulations import (
         HOLD_SECONDS,
         lifts_among,

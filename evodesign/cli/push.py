@@ -14,7 +14,7 @@ from evodesign.cli.options import CORES, Damaged, Design, Jobs, Json, RunPath
 from evodesign.errors import InputError
 
 if TYPE_CHECKING:
-    from evodesign.evaluation.pushes import Pushed
+    from evodesign.evaluation.pushes import PushedDesign
     from evodesign.report.opened_design import OpenedDesign
 
 
@@ -62,14 +62,14 @@ def push(
     from evodesign.cli.output import console, print_json, show_notes
     from evodesign.cli.progress import precompute_progress
     from evodesign.cli.tables.push import margins_table
-    from evodesign.control.feedback import Feedback
+    from evodesign.control.gains import Feedback
     from evodesign.evaluation.pushes import found_margins, margins_json
     from evodesign.report.opened_design import open_design
     from evodesign.runlog.run import read_run
     from evodesign.simulation.push_margin import DIRECTIONS
-    from evodesign.simulation.pushed_plan import Conditions
+    from evodesign.simulation.pushed_plan import PushConditions
 
-    conditions, logged = Conditions(Feedback(frequency, damping)), read_run(run)
+    conditions, logged = PushConditions(Feedback(frequency, damping)), read_run(run)
     show_notes(logged.notes)
     with precompute_progress() as progress:
         opened = open_design(logged, design, jobs, progress)
@@ -119,18 +119,18 @@ def push_once(
     from evodesign.cli.output import console, print_json, write_bytes
     from evodesign.cli.progress import precompute_progress
     from evodesign.cli.tables.push import pushes_table
-    from evodesign.control.feedback import Feedback
+    from evodesign.control.gains import Feedback
     from evodesign.evaluation.pushes import outcome_json
     from evodesign.report.opened_design import open_design
     from evodesign.runlog.run import read_run
     from evodesign.simulation.film import film, pushed_film
     from evodesign.simulation.push import Push
-    from evodesign.simulation.pushed_plan import Conditions
+    from evodesign.simulation.pushed_plan import PushConditions
 
     logged = read_run(run)
     with precompute_progress() as progress:
         pushed = pushed_in(open_design(logged, design, jobs, progress), *asked, alone=False)
-        tests = pushed.tests(Conditions(Feedback(*feedback)))
+        tests = pushed.tests(PushConditions(Feedback(*feedback)))
         given = Push(impulse, math.radians(turn))
         outcomes = {name: test.pushed(given, frames=video is not None) for name, test in tests.items()}
     if video is not None:
@@ -152,9 +152,9 @@ def pushed_in(
     payload: str | None,
     *,
     alone: bool,
-) -> Pushed:
+) -> PushedDesign:
     """The holds that are asked for: the lowest and highest ones unless heights are said."""
-    from evodesign.evaluation.pushes import Pushed
+    from evodesign.evaluation.pushes import PushedDesign
     from evodesign.evaluation.simulations import picked_cases, picked_holds
 
     cases = picked_holds(picked_cases(opened.cases, person, payload), heights)
@@ -167,4 +167,4 @@ def pushed_in(
             for end in (min, max)
         }
         cases = tuple(each for each in cases if each.case.name in ends)
-    return Pushed(opened.rebuilt.problem.scenes, opened.scene_set().robot, cases, alone=alone)
+    return PushedDesign(opened.rebuilt.problem.scenes, opened.scene_set().robot, cases, alone=alone)

@@ -81,7 +81,7 @@ def simulate(
     from evodesign.cli.output import console, print_json, show_notes
     from evodesign.cli.progress import precompute_progress
     from evodesign.cli.tables.simulation import simulation_table
-    from evodesign.control.feedback import Feedback
+    from evodesign.control.gains import Feedback
     from evodesign.evaluation.simulation_json import simulations_json
     from evodesign.evaluation.simulations import (
         HOLD_SECONDS,

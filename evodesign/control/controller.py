@@ -41,7 +41,7 @@ import scipy
 from numpy.typing import NDArray
 from scipy.linalg import lapack
 
-from evodesign.control.feedback import Feedback
+from evodesign.control.gains import Feedback
 from evodesign.control.limits import JointLimits
 from evodesign.control.moving_body import BodyMotion, FrameMotion, MovingBody
 from evodesign.control.quadratic import least_squares

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from evodesign.control.feedback import Feedback
+from evodesign.control.gains import Feedback
 from evodesign.mechanics.agent import Agent
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.model import Tree

@@ -10,7 +10,6 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TypeVar
 
 import msgspec
 
@@ -29,7 +28,7 @@ from evodesign.posture.results import AgentPosture, Array, CaseSolution, Instant
 from evodesign.problem.build import DesignProblem
 from evodesign.quantities.design_result import DesignResult
 from evodesign.quantities.objectives import objective_values
-from evodesign.quantities.push_quantities import SIMULATED
+from evodesign.quantities.push_quantities import unsimulated
 from evodesign.records import (
     ActiveLimit,
     AgentDetail,
@@ -37,12 +36,10 @@ from evodesign.records import (
     Assessment,
     CaseDetail,
     CaseOutcome,
-    Constraint,
     Genome,
     Hold,
     InstantDetail,
     LoadCaseDetail,
-    Objective,
     ProblemSource,
     ReachOutcome,
     Status,
@@ -50,8 +47,6 @@ from evodesign.records import (
 )
 from evodesign.searches.surrogate.threads import one_thread
 from evodesign.violations import BODIES_APART, missed_height, total_violation
-
-Named = TypeVar("Named", Objective, Constraint)
 
 UNDISTURBED = ""
 """Name of the load case in which nothing happens."""
@@ -149,13 +144,13 @@ class Evaluator:
             known = tuple(constraint for constraint in constraints if constraint.name == BODIES_APART)
         cases = tuple(case_outcome(solution, native=self._native) for solution in result.cases)
         missed, objectives = missed_height(reach, cases), self.problem.objectives
-        constrained = objective_values(_unsimulated(known), result)
-        violation = total_violation(_unsimulated(constraints), constrained, missed)
+        constrained = objective_values(unsimulated(known), result)
+        violation = total_violation(unsimulated(constraints), constrained, missed)
         if violation == 0.0:
             constrained = objective_values(known, result)
             violation = total_violation(constraints, constrained, missed)
         else:  # simulations take seconds
-            objectives = _unsimulated(objectives)
+            objectives = unsimulated(objectives)
         return Assessment(
             design=dict(self.problem.space.named(values)),
             objectives=objective_values(objectives, result),
@@ -167,10 +162,6 @@ class Evaluator:
             constraints=constrained or msgspec.UNSET,
             rated=rated_of(result) or msgspec.UNSET,
         )
-
-
-def _unsimulated(quantities: tuple[Named, ...]) -> tuple[Named, ...]:
-    return tuple(each for each in quantities if each.name not in SIMULATED)
 
 
 def _status(result: DesignResult) -> Status:

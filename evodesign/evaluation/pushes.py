@@ -16,7 +16,7 @@ from evodesign.motion.solution import LiftSolution
 from evodesign.records import CaseDetail
 from evodesign.simulation.push import Push, PushOutcome, PushTest
 from evodesign.simulation.push_margin import Margin, margin_in, margins
-from evodesign.simulation.pushed_plan import Conditions, alone_test, hold_test, lift_tests
+from evodesign.simulation.pushed_plan import PushConditions, alone_test, hold_test, lift_tests
 from evodesign.tree.model import Tree
 
 PERTURBED = {"friction": 0.8, "mass": 1.05, "delay": 1}
@@ -24,7 +24,7 @@ PERTURBED = {"friction": 0.8, "mass": 1.05, "delay": 1}
 
 
 @dataclass(frozen=True, slots=True)
-class Pushed:
+class PushedDesign:
     """Where a robot of a design is pushed.
 
     Args:
@@ -41,7 +41,7 @@ class Pushed:
     lifts: Sequence[tuple[tuple[str, str], LiftSolution]] = ()
     alone: bool = False
 
-    def tests(self, conditions: Conditions) -> dict[str, PushTest]:
+    def tests(self, conditions: PushConditions) -> dict[str, PushTest]:
         """Of every moment, by its name.
 
         Raises:
@@ -106,7 +106,7 @@ class FoundMargins:
 
 
 def found_margins(
-    pushed: Pushed, conditions: Conditions, directions: Sequence[float], *, spread: bool
+    pushed: PushedDesign, conditions: PushConditions, directions: Sequence[float], *, spread: bool
 ) -> FoundMargins:
     """The margins of a design.
 
@@ -121,7 +121,7 @@ def found_margins(
     return replace(found, spread=_spread(pushed, conditions, found.least)) if spread else found
 
 
-def _spread(pushed: Pushed, conditions: Conditions, least: Margin) -> dict[str, float]:
+def _spread(pushed: PushedDesign, conditions: PushConditions, least: Margin) -> dict[str, float]:
     late = replace(conditions.timing, delay=conditions.timing.delay + int(PERTURBED["delay"]))
     others = {
         "friction": replace(conditions, friction=PERTURBED["friction"]),
@@ -136,7 +136,7 @@ def _spread(pushed: Pushed, conditions: Conditions, least: Margin) -> dict[str, 
     }
 
 
-def margins_json(found: FoundMargins, conditions: Conditions) -> dict[str, Any]:
+def margins_json(found: FoundMargins, conditions: PushConditions) -> dict[str, Any]:
     """What the table of margins shows, in SI units and degrees."""
     return {
         "feedback": {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from evodesign.control.feedback import Feedback
+from evodesign.control.gains import Feedback
 from evodesign.evaluation.simulations import SimulatedCase
 from evodesign.simulation.outcome import AgentOutcome
 

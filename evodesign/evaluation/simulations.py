@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import msgspec
 
-from evodesign.control.feedback import Feedback
+from evodesign.control.gains import Feedback
 from evodesign.errors import InputError
 from evodesign.evaluation.logged_posture import logged_posture
 from evodesign.mechanics.scene import Scene, scene_of

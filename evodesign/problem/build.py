@@ -44,7 +44,7 @@ from evodesign.problem.from_tables import (
 )
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import held_by, payloads, refuse_stiff_arms, scene_disturbances
-from evodesign.problem.pushes import pushes_of
+from evodesign.problem.push_settings import pushes_of
 from evodesign.problem.samples import samples_of
 from evodesign.problem.source import decode_toml
 from evodesign.problem.stance_limits import stance_of

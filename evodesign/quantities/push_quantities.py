@@ -12,14 +12,15 @@ seconds: they are run for designs alone that keep every other constraint.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
-from evodesign.control.feedback import Feedback
+from evodesign.control.gains import Feedback
 from evodesign.control.limits import WATCHED_SECONDS
 from evodesign.mechanics.agent import ROBOT
 from evodesign.motion.solution import MotionCase
+from evodesign.records import Constraint, Objective
 from evodesign.tasks import Hold
 from evodesign.tree.model import Tree
 
@@ -32,6 +33,14 @@ SATURATION, RECOVERY = "torque_saturation", "recovery_seconds"
 
 SIMULATED = (MARGIN, ALONE, TRACKING, SATURATION, RECOVERY)
 """Quantities that take simulations."""
+
+
+Named = TypeVar("Named", Objective, Constraint)
+
+
+def unsimulated(quantities: Sequence[Named]) -> tuple[Named, ...]:
+    """Those among them that take no simulations."""
+    return tuple(each for each in quantities if each.name not in SIMULATED)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,9 +101,9 @@ class DesignPushes:
             self._tree, self._margins, self._outcomes = result.tree, {}, []
 
     def _tests(self, result: DesignResult, *, alone: bool = False) -> Mapping[str, PushTest]:
-        from evodesign.simulation.pushed_plan import Conditions, alone_test, hold_test, lift_tests
+        from evodesign.simulation.pushed_plan import PushConditions, alone_test, hold_test, lift_tests
 
-        conditions = Conditions(self._settings.feedback)
+        conditions = PushConditions(self._settings.feedback)
         found: dict[str, PushTest] = {}
         for case in result.cases if all(each.solved for each in result.cases) else ():
             scene, task = result.scene_of(case.case).undisturbed, case.case.task

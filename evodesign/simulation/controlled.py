@@ -22,7 +22,7 @@ import mujoco
 import numpy as np
 
 from evodesign.control.controller import Command, HandShare, WholeBodyController
-from evodesign.control.feedback import Feedback
+from evodesign.control.gains import Feedback
 from evodesign.control.limits import JointLimits
 from evodesign.control.moving_body import MovingBody
 from evodesign.control.target import Target

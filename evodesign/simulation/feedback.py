@@ -17,7 +17,7 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
-from evodesign.control.feedback import Feedback
+from evodesign.control.gains import Feedback
 from evodesign.mechanics.floating_base import ROOT
 from evodesign.posture.results import Array
 from evodesign.simulation.model import AgentParts, SimulatedScene

@@ -114,7 +114,7 @@ class PushTest:
         agent = scene.controllers[push.agent].body.agent
         angle = agent.facing + push.direction
         force = push.impulse / push.seconds * np.array([math.cos(angle), math.sin(angle), 0.0])
-        watched = _Watched(scene, push.agent)
+        watched = _PushRecord(scene, push.agent)
         states, forces, every = [], [], max(1, round(FRAME / scene.timing.step))
         lasting = round(push.seconds / scene.timing.step)
         for number in range(round(WATCHED_SECONDS / scene.timing.step)):
@@ -124,13 +124,13 @@ class PushTest:
                 states.append(np.array(scene.found.data.qpos))
                 forces.append(now)
             watched.saw(scene.advance(), self.load_off())
-            if watched.reason or (number >= lasting and watched.calm):
+            if watched.reason or (number >= lasting and watched.is_back):
                 break
         return PushOutcome(
             push=push,
             reason=watched.reason,
             seconds=watched.seconds,
-            recovery=watched.last if watched.calm and not watched.reason else None,
+            recovery=watched.last if watched.is_back and not watched.reason else None,
             load_off=watched.load_off,
             saturation=watched.saturated / watched.seconds,
             capture=watched.capture,
@@ -147,7 +147,7 @@ class PushTest:
         return float(np.linalg.norm(place - [0.0, 0.0, height]))
 
 
-class _Watched:
+class _PushRecord:
     """What has been seen since a push.
 
     Attributes:
@@ -165,7 +165,7 @@ class _Watched:
         self._broken: dict[str, float] = {}
 
     @property
-    def calm(self) -> bool:
+    def is_back(self) -> bool:
         """Whether all have been back for long enough."""
         return self.seconds - self.last >= CALM_SECONDS
 

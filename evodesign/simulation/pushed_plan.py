@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from evodesign.control.feedback import Feedback
+from evodesign.control.gains import Feedback
 from evodesign.control.moving_body import MovingBody
 from evodesign.control.target import Target, lift_targets, target_of
 from evodesign.mechanics.balance import GRAVITY
@@ -36,7 +36,7 @@ LIFT_SHARES = (1.0 / 3.0, 2.0 / 3.0)
 
 
 @dataclass(frozen=True, slots=True)
-class Conditions:
+class PushConditions:
     """How everything is that a plan does not say.
 
     Args:
@@ -63,7 +63,7 @@ def hold_test(
     trees: Mapping[str, Tree],
     postures: Mapping[str, AgentPosture],
     height: float,
-    conditions: Conditions,
+    conditions: PushConditions,
 ) -> PushTest:
     """Pushes while a load is held.
 
@@ -81,7 +81,7 @@ def hold_test(
 
 
 def alone_test(
-    scene: Scene, trees: Mapping[str, Tree], postures: Mapping[str, AgentPosture], conditions: Conditions
+    scene: Scene, trees: Mapping[str, Tree], postures: Mapping[str, AgentPosture], conditions: PushConditions
 ) -> PushTest:
     """Pushes on the first robot alone, in its posture of a hold; arguments as `hold_test`."""
     robot = replace(scene.robot, contacts=scene.robot.feet)
@@ -108,7 +108,7 @@ def alone_test(
 
 
 def lift_tests(
-    scene: Scene, trees: Mapping[str, Tree], course: LiftCourse, conditions: Conditions
+    scene: Scene, trees: Mapping[str, Tree], course: LiftCourse, conditions: PushConditions
 ) -> dict[float, PushTest]:
     """Pushes in the course of a lift, by the time of the push [s]; arguments as `hold_test`."""
     step, seconds = conditions.timing.step, course.lift.seconds
@@ -134,7 +134,7 @@ def _controlled(
     postures: Mapping[str, AgentPosture],
     height: float,
     targets: Targets,
-    conditions: Conditions,
+    conditions: PushConditions,
 ) -> ControlledScene:
     return ControlledScene(
         conditions.changed(scene),

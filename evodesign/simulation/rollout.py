@@ -18,7 +18,7 @@ from collections.abc import Mapping
 import mujoco
 import numpy as np
 
-from evodesign.control.feedback import Feedback
+from evodesign.control.gains import Feedback
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import Array
 from evodesign.simulation.contact_wrenches import foot_wrenches, hand_wrenches

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from evodesign.control.controller import Command, WholeBodyController
-from evodesign.control.feedback import Feedback
+from evodesign.control.gains import Feedback
 from evodesign.control.limits import JointLimits
 from evodesign.control.moving_body import MovingBody
 from evodesign.control.quadratic import least_squares

@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from evodesign.control.feedback import Feedback
+from evodesign.control.gains import Feedback
 from evodesign.simulation.controlled import Timing
 from evodesign.simulation.push import Push, PushOutcome, PushTest
 from evodesign.simulation.push_margin import least_margin, margin_in, margins
-from evodesign.simulation.pushed_plan import Conditions, alone_test, hold_test
+from evodesign.simulation.pushed_plan import PushConditions, alone_test, hold_test
 from tests.control.pendulum import Pendulum
 from tests.simulation.conftest import HEIGHT, Held
 
@@ -62,7 +62,7 @@ def test_bisection_finds_the_limit_in_each_direction_and_the_least_with_fewer_tr
 
 @pytest.fixture(scope="module")
 def pushed_hold(held: Held) -> PushTest:
-    return hold_test(held.scene, held.trees, held.solution.postures, HEIGHT, Conditions())
+    return hold_test(held.scene, held.trees, held.solution.postures, HEIGHT, PushConditions())
 
 
 def test_a_push_is_survived_or_not_and_told_alike_each_time(pushed_hold: PushTest) -> None:
@@ -78,20 +78,20 @@ def test_a_push_is_survived_or_not_and_told_alike_each_time(pushed_hold: PushTes
 
 def test_late_sensors_and_another_load_change_what_a_push_does(held: Held, pushed_hold: PushTest) -> None:
     known = pushed_hold.pushed(Push(8.0, math.pi))
-    for conditions in (Conditions(timing=Timing(delay=1)), Conditions(mass=1.05)):
+    for conditions in (PushConditions(timing=Timing(delay=1)), PushConditions(mass=1.05)):
         changed = hold_test(held.scene, held.trees, held.solution.postures, HEIGHT, conditions)
         assert changed.pushed(Push(8.0, math.pi)).capture != known.capture
 
 
 def test_a_robot_alone_stands_above_its_soles_and_is_pushed(held: Held) -> None:
-    alone = alone_test(held.scene, held.trees, held.solution.postures, Conditions())
+    alone = alone_test(held.scene, held.trees, held.solution.postures, PushConditions())
     outcome = alone.pushed(Push(5.0, 0.0))
     assert outcome.survived
     assert outcome.load_off == 0.0
 
 
 def test_a_controller_too_slow_to_stand_says_who_falls(held: Held) -> None:
-    slow = Conditions(Feedback(0.05, 0.05))
+    slow = PushConditions(Feedback(0.05, 0.05))
     outcome = hold_test(held.scene, held.trees, held.solution.postures, HEIGHT, slow).pushed(Push(20.0, 0.0))
     assert not outcome.survived
     assert outcome.reason

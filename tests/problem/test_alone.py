@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from evodesign.control.feedback import Feedback
+from evodesign.control.gains import Feedback
 from evodesign.errors import InputError
 from evodesign.evaluation.clearance import solved_distances
 from evodesign.evaluation.evaluate import Evaluator

@@ -17,7 +17,7 @@ import pytest
 
 from evodesign.body.shape import Box, Cylinder, Sphere
 from evodesign.collision.rules import partner_side
-from evodesign.control.feedback import Feedback
+from evodesign.control.gains import Feedback
 from evodesign.errors import InputError
 from evodesign.evaluation.evaluate import Evaluator, case_outcome
 from evodesign.evaluation.evaluation_json import evaluation_json

@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from evodesign.control.feedback import Feedback
+from evodesign.control.gains import Feedback
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.simulations import simulated_holds
 from evodesign.guess.preflight import preflight

@@ -15,6 +15,7 @@ from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import DesignProblem
 from evodesign.quantities.design_result import DesignResult
 from evodesign.quantities.objectives import objective_kinds
+from evodesign.quantities.push_quantities import SIMULATED
 from evodesign.records import Status
 from evodesign.tree.equip import WallOfLink, with_actuators, with_walls
 from evodesign.tree.urdf_write import urdf_text
@@ -85,7 +86,7 @@ def test_peak_torque_is_the_largest_share_of_a_joints_limit(result: DesignResult
 
 
 def test_every_objective_has_a_unit_and_a_value(result: DesignResult) -> None:
-    """Only what needs [collisions] or a lift is none here (tests/evaluation/test_lifts.py)."""
+    """Only what needs [collisions], a lift (tests/evaluation/test_lifts.py) or [push] is none here."""
     known = driven(replace(limited(result), people_highest=1.9))
     assert all(kind.unit for kind in OBJECTIVES.values())
     assert [name for name, kind in OBJECTIVES.items() if kind.value(known) is None] == [
@@ -94,4 +95,5 @@ def test_every_objective_has_a_unit_and_a_value(result: DesignResult) -> None:
         "energy",
         "lift_seconds",
         "worst_lift_seconds",
+        *SIMULATED,
     ]

@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from evodesign.control.feedback import Feedback
+from evodesign.control.gains import Feedback
 from evodesign.errors import InputError
 from evodesign.mechanics.agent import SIDES
 from evodesign.mechanics.payload import Grasp

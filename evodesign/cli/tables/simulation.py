@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from evodesign.cli.output import markup
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
-from evodesign.control.feedback import Feedback
+from evodesign.control.gains import Feedback
 from evodesign.evaluation.simulations import SimulatedCase
 from evodesign.simulation.outcome import SETTLED
 

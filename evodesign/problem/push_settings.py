@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from evodesign.control.feedback import Feedback
+from evodesign.control.gains import Feedback
 from evodesign.errors import InputError
 from evodesign.mechanics.scene import Scene
 from evodesign.problem.file import ProblemFile
