@@ -21,6 +21,7 @@ from evodesign.nlp.optimality import NotDifferentiable
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
 from evodesign.quantities.objectives import objective_kinds
+from evodesign.quantities.push_quantities import SIMULATED
 from evodesign.records import Objective, Sense
 from evodesign.tree.kinematics import Pose, forward
 
@@ -29,8 +30,9 @@ OBJECTIVES = {
     for name, kind in objective_kinds().items()
     if name not in ("bodies_apart", "parts_apart", "torque_margin", "least_safety_factor", "cost", "energy")
     and "lift_seconds" not in name
+    and name not in SIMULATED
 }
-"""Those that a robot without actuators has, which holds a load, in a problem without [collisions]."""
+"""Those that a robot without actuators has, which holds a load, in a problem without [collisions] and pushes."""
 
 
 @pytest.fixture(scope="module")
