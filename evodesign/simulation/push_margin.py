@@ -1,7 +1,8 @@
 """The largest push that is survived, in each of eight directions or in the weakest of them.
 
-Bisection between an impulse that is survived and one that is not; who survives an impulse is taken to survive
-every smaller one. For the weakest direction alone every other one is only tried at the least margin so far,
+Bisection between an impulse that is survived and one that is not. Who survives an impulse need not survive
+every smaller one: near the margin outcomes alternate, so what bisection finds counts only if two smaller ones
+are survived. For the weakest direction alone every other one is only tried at the least margin so far,
 and bisected where it fails there.
 """
 
@@ -18,6 +19,9 @@ DIRECTIONS = tuple(math.radians(each) for each in (180.0, 0.0, 90.0, 270.0, 135.
 
 RESOLUTION = 0.02
 """Of a margin, relative."""
+
+BELOW = (0.95, 0.85)
+"""Shares of a margin that have to be survived too, or it is searched below the one that is not."""
 
 SMALLEST = 0.1
 """An impulse [N s]: who does not survive it has no margin."""
@@ -75,10 +79,15 @@ def margin_in(
         if high >= min(most, FASTEST * mass):
             return Margin(moment, push.direction, high, "", len(outcomes))
         high = min(2.0 * high, most, FASTEST * mass)
-    while high - low > max((resolution or RESOLUTION) * high, SMALLEST):
-        middle = (low + high) / 2.0
-        low, high = (low, middle) if fails(middle) else (middle, high)
-    return Margin(moment, push.direction, low, outcomes[high].reason, len(outcomes))
+    while True:
+        while high - low > max((resolution or RESOLUTION) * high, SMALLEST):
+            middle = (low + high) / 2.0
+            low, high = (low, middle) if fails(middle) else (middle, high)
+        lost = next((share * low for share in BELOW if low > 0.0 and fails(share * low)), None)
+        if lost is None:
+            return Margin(moment, push.direction, low, outcomes[high].reason, len(outcomes))
+        high = lost
+        low = max((each for each, found in outcomes.items() if each < lost and found.survived), default=0.0)
 
 
 def margins(
