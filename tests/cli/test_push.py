@@ -23,9 +23,11 @@ def test_a_push_of_the_margin_is_survived_and_one_beyond_it_is_not(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr("evodesign.simulation.push_margin.RESOLUTION", 0.3)
-    run("push", *HOLD, "--direction", "90", "--json")
+    run("push", *HOLD, "--direction", "90", "--frequency", "8", "--spread", "--json")
     told = json.loads(capsys.readouterr().out)
     (margin,) = told["margins"]
+    assert len(told["spread_n_s"]) == 3
+    assert all(margin["margin_n_s"] + change >= 0.0 for change in told["spread_n_s"].values())
     assert (margin["moment"], margin["direction_deg"]) == ("tall, 0.8 m", 90.0)
     assert told["push_margin_n_s"] == margin["margin_n_s"] > 1.0
     ends = []

@@ -32,7 +32,7 @@ OBJECTIVES = {
     and "lift_seconds" not in name
     and name not in SIMULATED
 }
-"""Those that a robot without actuators has, which holds a load, in a problem without [collisions] and pushes."""
+"""Those that a robot without actuators has, which holds a load, without [collisions] and pushes."""
 
 
 @pytest.fixture(scope="module")
