@@ -85,7 +85,8 @@ def test_every_quantity_can_be_bounded(problem: DesignProblem) -> None:
     every = [*objective_kinds(), *(f"q90_{name}" for name in QUANTITIES)]
     names = [name for name in every if not name.endswith(NEED_LIFTS)]
     limited = msgspec.structs.replace(
-        problem.source, text=problem.source.text.replace("[robot]\n", f"[robot]\n{LIMITED}") + DRIVEN
+        problem.source,
+        text=problem.source.text.replace("[robot]\n", f"[robot]\n{LIMITED}") + DRIVEN + "\n[push]\n",
     )
     text = "\n".join(f"{constraint_key(name)} = {{ upper = 9.0 }}" for name in names)
     found = build_problem(bounded(limited, text))
