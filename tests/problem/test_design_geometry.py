@@ -14,6 +14,8 @@ from evodesign.errors import InputError
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.gradients import assessed_gradients
 from evodesign.evaluation.sensitivities import Sensitivities
+from evodesign.posture.postures import PostureProblem
+from evodesign.posture.results import CaseSolution
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.designs import designs_text, read_designs
 from evodesign.problem.model_json import model_json
@@ -95,6 +97,21 @@ def test_postures_keep_to_the_limits_of_the_design(moved: DesignProblem) -> None
     assert norms[1] > 1.001 * norms[0]
 
 
+STEP = 5e-4
+
+
+def norm_beside(formulation: PostureProblem, values: tuple[float, ...], solution: CaseSolution) -> float:
+    """The robot's torque norm of a neighbouring design, in the posture beside that of a solution [N m]."""
+    near = formulation.followed(values, solution)
+    assert near is not None
+    return near.postures["robot"].torque_norm
+
+
+def five_point(values: list[float]) -> float:
+    """The derivative, from values at -2, -1, 1 and 2 steps."""
+    return (8.0 * (values[2] - values[1]) - (values[3] - values[0])) / (12.0 * STEP)
+
+
 def test_gradients_by_offset_tilt_and_limit_are_those_of_differences(moved: DesignProblem) -> None:
     evaluator = Evaluator(moved)
     values = (1.0, 1.0, 0.02, 0.1, math.radians(45.0))
@@ -106,14 +123,12 @@ def test_gradients_by_offset_tilt_and_limit_are_those_of_differences(moved: Desi
     ).values["robot_torque"]
     formulation = evaluator.inner.postures[solution.case.pair]
     for place, parameter in enumerate(moved.space.parameters):
-        step, ends = 1e-5, []
-        for sign in (1.0, -1.0):
-            near = tuple(v + sign * step * (p == place) for p, v in enumerate(values))
-            moved_posture = formulation.followed(near, solution)
-            assert moved_posture is not None
-            ends.append(moved_posture.postures["robot"].torque_norm)
-        slope = (ends[0] - ends[1]) / (2.0 * step) * (parameter.upper - parameter.lower)
-        assert found[parameter.name] == pytest.approx(slope, rel=2e-3, abs=2e-3), parameter.name
+        norms = []
+        for steps in (-2, -1, 1, 2):
+            near = tuple(v + steps * STEP * (p == place) for p, v in enumerate(values))
+            norms.append(norm_beside(formulation, near, solution))
+        slope = five_point(norms) * (parameter.upper - parameter.lower)
+        assert found[parameter.name] == pytest.approx(slope, rel=1e-6, abs=1e-6), parameter.name
 
 
 @pytest.mark.parametrize(
@@ -193,13 +208,9 @@ def test_sections_are_parameters_with_gradients_of_their_own() -> None:
     slopes = assessed_gradients(
         problem, Sensitivities(problem, evaluator.known, evaluator.inner), (1.1,), result
     ).values["robot_torque"]
-    formulation, ends = evaluator.inner.postures[solution.case.pair], []
-    for sign in (1.0, -1.0):
-        near = formulation.followed((1.1 + sign * 1e-4,), solution)
-        assert near is not None
-        ends.append(near.postures["robot"].torque_norm)
-    slope = (ends[0] - ends[1]) / 2e-4 * 0.7
-    assert slopes["section.thigh"] == pytest.approx(slope, rel=2e-3, abs=1e-4)
+    formulation = evaluator.inner.postures[solution.case.pair]
+    norms = [norm_beside(formulation, (1.1 + steps * STEP,), solution) for steps in (-2, -1, 1, 2)]
+    assert slopes["section.thigh"] == pytest.approx(0.7 * five_point(norms), rel=1e-6, abs=1e-6)
 
 
 def test_a_section_along_one_axis_of_a_cylinder_is_refused() -> None:
