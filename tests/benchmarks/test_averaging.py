@@ -9,7 +9,7 @@ from benchmarks.averaging import measured
 
 @pytest.mark.slow
 @pytest.mark.needs_robots
-@pytest.mark.parametrize("name", ["talos", "g1"])
+@pytest.mark.parametrize("name", ["g1"])
 def test_whole_postures_of_averaged_and_original_robot_have_equal_torques(name: str) -> None:
     rows = [*measured(name)]
     assert len(rows) == 3
