@@ -558,13 +558,13 @@ class ProblemFile(Table, frozen=True):
         hardware: settings of hollow links.
         duty: how the robot is used, for winding temperatures. Since 0.3.
         load_case: what else actuators are sized for.
-        push: pushes that are simulated, for quantities such as `push_margin`. Since 0.3.
         limits: limits of ground contact and stance.
         search: how to search.
         solver: how to solve.
         baseline: the paper's joint problem.
         disturbance: further load cases of postures.
         collisions: whether bodies may overlap.
+        push: pushes that are simulated, for quantities such as `push_margin`. Since 0.3.
         description: one sentence on the problem.
     """
 
