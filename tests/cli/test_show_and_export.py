@@ -33,7 +33,8 @@ from evodesign.records import (
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
-from tests.report.page.reading import check_to_seven_digits, embedded
+from evodesign.tree.words import in_words
+from tests.report.page.reading import check_as_shown, embedded
 from tests.report.scenes import hold_json, random_detail
 from tests.runlog.toys import toy_detail, toy_evaluations, toy_header
 
@@ -99,7 +100,8 @@ def test_card_shows_the_logged_numbers(run: Path, capsys: pytest.CaptureFixture[
         assert [row[1:3] for row in rows if row[0] == rounded(outcome.case.task.height_m)] == [expected]
     for agent in ("robot", "human"):
         torques = [height.agents[agent].torques_n_m for height in detail.cases]
-        shown = {row[1]: row[2:] for row in rows if row[0] == agent and row[1] in torques[0]}
+        joints = {in_words(joint): joint for joint in torques[0]}
+        shown = {joints[row[1]]: row[2:] for row in rows if row[0] == agent and row[1] in joints}
         assert len(shown) == 6
         peaks = {joint: max(abs(at[joint]) for at in torques) for joint in torques[0]}
         assert min(peaks[joint] for joint in shown) >= max(
@@ -141,7 +143,7 @@ def test_card_and_json_say_what_the_postures_ask_of_the_person(
         assert (float(back), float(shear)) == pytest.approx(
             (one["back_compression_n"] / 1000.0, one["back_shear_n"] / 1000.0), abs=6e-3
         )
-        assert (load, tires) == (f"{one['load_torque_n_m']:.1f}", one["endurance_joint"])
+        assert (load, tires) == (f"{one['load_torque_n_m']:.1f}", in_words(one["endurance_joint"]))
         assert scores == [str(one[worksheet]["whole"]) for worksheet in ("rula", "reba")]
         assert row[0].startswith(one["hardest_joint"])
         assert row[1:3] == [f"{one['effort']:.1%}", f"{one['hands_ahead_m']:.2f}"]
@@ -182,7 +184,9 @@ def test_a_report_shows_postures_of_designs_that_are_asked_for_and_not_in_the_lo
     show(run, 1, jobs=1, json=True, plot=None)
     solved = json.loads(capsys.readouterr().out)["postures"]
     page = embedded((tmp_path / "page.html").read_text(encoding="utf-8"))
-    check_to_seven_digits([hold_json(detail) for detail in page.designs[1].postures], solved)
+    check_as_shown(
+        {"postures": [hold_json(detail) for detail in page.designs[1].postures]}, {"postures": solved}
+    )
 
 
 def test_plot_writes_five_figures_twice(
@@ -248,9 +252,9 @@ def test_hostile_names_are_text_on_the_terminal(hostile: Path, capsys: pytest.Ca
     assert "length.../x" in names
     assert f"length.{HOSTILE}" in names
     assert {row[1] for row in cells(text) if row[0] == "robot"} & {
-        "=l_$el_bow$<b>",
-        "=r_$el_bow$<b>",
-        "l_knee",
+        "=l $el bow$<b>",
+        "=r $el bow$<b>",
+        "left knee",
     }
 
 
@@ -264,7 +268,7 @@ def test_hostile_names_stay_names_in_files(hostile: Path, tmp_path: Path) -> Non
         assert "<script" not in path.read_text()
         ET.parse(path)
     svg = (tmp_path / "figures" / "torques_by_joint.svg").read_text()
-    assert "=l_$el_bow$&lt;b&gt;" in svg
+    assert "=l $el bow$&lt;b&gt;" in svg
     for name in ("robot.urdf", "robot.xml"):
         text = (tmp_path / "design" / name).read_text()
         assert "<script" not in text
