@@ -13,6 +13,7 @@ from evodesign.cli.show import show
 from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.problem.build import DesignProblem
 from evodesign.runlog.run import RunLog
+from evodesign.tree.words import in_words
 from tests.cli.test_show_and_export import cells
 from tests.report.several import CASES, HEIGHTS, LOADS, PEOPLE, problem_of_several, write_several
 
@@ -70,7 +71,7 @@ def test_card_names_the_case_of_largest_torque_and_contact_force(
         for joint in sizes.max().sort_values(ascending=False).index[:6]:
             case = sizes[joint].idxmax()
             numbers = [rounded(sizes[joint].mean()), rounded(torques[joint][case])]
-            assert [agent, joint, *numbers, case] in rows
+            assert [agent, in_words(joint), *numbers, case] in rows
         forces = [float(np.linalg.norm(posture.wrenches["left_hand"][:3])) for posture in postures]
         numbers = [rounded(float(np.mean(forces))), rounded(max(forces))]
         assert [agent, "left hand", *numbers, names[int(np.argmax(forces))]] in rows
