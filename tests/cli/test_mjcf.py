@@ -12,9 +12,10 @@ import pytest
 
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.problem.build import build_problem
+from evodesign.problem.copied import copy_source
 from evodesign.problem.meshes import is_kept_name
 from evodesign.problem.reread import reread
-from evodesign.problem.source import copy_source, read_source
+from evodesign.problem.source import read_source
 from evodesign.tree.mjcf_write import mjcf_text
 from evodesign.tree.urdf_write import urdf_text
 from tests.cli.test_init import run

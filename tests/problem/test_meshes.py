@@ -15,10 +15,11 @@ import trimesh
 from evodesign.errors import InputError
 from evodesign.problem import mesh_reading
 from evodesign.problem.build import build_problem
+from evodesign.problem.copied import copy_source
 from evodesign.problem.mesh_places import MeshPlaces
 from evodesign.problem.mesh_reading import MOST_BYTES, read_mesh
 from evodesign.problem.meshes import OF_ONE, kept_name, with_surfaces
-from evodesign.problem.source import copy_source, read_source
+from evodesign.problem.source import read_source
 from evodesign.records import ProblemSource
 from evodesign.tree.resize import resize
 from evodesign.tree.surface import MOST_TRIANGLES, Surface, read_surface, surface_of, surface_text
