@@ -13,6 +13,7 @@ import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterable
 from functools import cache
+from importlib.util import find_spec
 from typing import NoReturn
 
 import pytest
@@ -73,10 +74,16 @@ def memory_sanitizer() -> tuple[str, ...]:
     return ()
 
 
+def drake_installed() -> bool:
+    """Whether the second engine is there."""
+    return find_spec("pydrake") is not None
+
+
 NEEDS: dict[str, tuple[Callable[[], object], str]] = {
     "needs_chromium": (chromium, "no Chromium (Debian: apt-get install chromium)"),
     "needs_clang": (memory_sanitizer, "no clang with its memory sanitizer (Debian: apt-get install clang)"),
     "needs_compiler": (compiler_works, "no C compiler that works (Debian: apt-get install gcc libc6-dev)"),
+    "needs_drake": (drake_installed, "no Drake (pip install 'evodesign[drake]')"),
     "needs_robots": (robots_installed, "no public robots (make test-all installs them)"),
 }
 """By marker: whether this machine has what is needed, and the reason and remedy if not."""

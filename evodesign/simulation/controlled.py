@@ -1,15 +1,13 @@
-"""Robot, person and load in MuJoCo, each agent under a whole-body controller of its own.
+"""Robot, person and load in an engine, each agent under a whole-body controller of its own.
 
-Controllers answer at a rate of their own; MuJoCo moves on in finer steps. Between two answers motors follow
+Controllers answer at a rate of their own; the engine moves on in finer steps. Between two answers motors
+follow
 
     tau = tau* + d (v* + a* t - v),        d = 2 z w I
 
 with the torques tau* and accelerations a* of the answer, the speeds v* that it was given, and I of each joint
-as in `feedback`: feet, which are light, would flutter under torques alone. d is taken at the end of a step,
-by h d in the joints' inertia (`rollout`). A controller knows the state of its own body, as it was some time
-ago where sensors are late, and the plan; of the others it knows nothing.
-
-Source: Tan, Liu and Turk 2011 (damping at the end of a step).
+as in `feedback`: feet, which are light, would flutter under torques alone. A controller knows the state of
+its own body, as it was some time ago where sensors are late, and the plan; of the others it knows nothing.
 """
 
 from __future__ import annotations
@@ -18,7 +16,6 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-import mujoco
 import numpy as np
 
 from evodesign.control.controller import Command, HandShare, WholeBodyController
@@ -26,11 +23,12 @@ from evodesign.control.gains import Feedback
 from evodesign.control.limits import JointLimits
 from evodesign.control.moving_body import MovingBody
 from evodesign.control.target import Target
+from evodesign.mechanics.floating_base import ROOT
 from evodesign.mechanics.payload import Grasp
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture, Array
-from evodesign.simulation.feedback import joint_inertias
-from evodesign.simulation.model import simulated_scene
+from evodesign.simulation.engine import EngineMaker
+from evodesign.simulation.mujoco_engine import MujocoEngine
 from evodesign.tree.model import Tree
 
 Targets = Callable[[int], Mapping[str, Target]]
@@ -69,12 +67,12 @@ class Snapshot:
     """A moment to which a scene can return.
 
     Args:
-        data: MuJoCo's.
+        moment: of the engine.
         number: of the next answer.
         seen: states that controllers are still to see, by agent name.
     """
 
-    data: mujoco.MjData
+    moment: object
     number: int
     seen: Mapping[str, tuple[State, ...]]
 
@@ -91,8 +89,9 @@ class ControlledScene:
         feedback: that sets all gains.
         timing: of the answers.
         planned: the scene that the controllers know; None: as it is.
+        engine: that moves it.
     Attributes:
-        found: MuJoCo's model and state.
+        engine: with everything as it is now.
         controllers: by agent name.
         number: of the next answer.
     """
@@ -107,9 +106,11 @@ class ControlledScene:
         feedback: Feedback,
         timing: Timing,
         planned: Scene | None = None,
+        engine: EngineMaker = MujocoEngine,
     ) -> None:
         known = scene if planned is None else planned
-        self.found = simulated_scene(scene, trees, postures, height, timing.step / timing.substeps)
+        self._substep = timing.step / timing.substeps
+        self.engine = engine(scene, trees, postures, height, self._substep, feedback.rate)
         self.timing, self._targets, self.number = timing, targets, 0
         self.controllers: dict[str, WholeBodyController] = {}
         for agent in known.agents:
@@ -117,25 +118,14 @@ class ControlledScene:
             self.controllers[agent.name] = WholeBodyController(
                 body, known.ground, limits, hand_share(known), feedback
             )
-        model = self.found.model
-        self._ramp, self._damping = np.zeros(model.nu), np.zeros(model.nu)
-        for parts in self.found.agents.values():
-            self._damping[parts.actuators] = feedback.rate * joint_inertias(self.found, parts)
-            model.dof_armature[parts.rates] += model.opt.timestep * self._damping[parts.actuators]
-        model.actuator_biasprm[:, 2] = -self._damping
-        mujoco.mj_forward(model, self.found.data)
         self._seen = {name: deque([self.state(name)], timing.delay + 1) for name in self.controllers}
 
     def state(self, name: str) -> State:
         """Of an agent, now."""
-        found, parts, body = self.found, self.found.agents[name], self.controllers[name].body
-        model, data = found.model, found.data
-        joint = model.body_jntadr[parts.root]
-        place, rate = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
-        v, turn = np.empty(body.size), data.xmat[parts.root].reshape(3, 3)
-        v[:3], v[3:6] = turn.T @ data.qvel[rate : rate + 3], data.qvel[rate + 3 : rate + 6]
-        v[body.rates] = data.qvel[parts.rates]
-        return body.coordinates(data.qpos[place : place + 7], data.qpos[parts.positions]), v
+        now, body = self.engine.state(name), self.controllers[name].body
+        v = np.empty(body.size)
+        v[:ROOT], v[body.rates] = now.twist, now.rates
+        return body.coordinates(now.root, now.positions), v
 
     def targets(self) -> Mapping[str, Target]:
         """Of this moment."""
@@ -143,39 +133,28 @@ class ControlledScene:
 
     def advance(self) -> dict[str, Command]:
         """Answers of this moment, by agent name, and on to the next; without one torques stay."""
-        model, data, targets, commands = self.found.model, self.found.data, self.targets(), {}
+        targets, commands = self.targets(), {}
         for name, controller in self.controllers.items():
             self._seen[name].append(self.state(name))
             q, v = self._seen[name][0]
             command = commands[name] = controller.command(q, v, targets[name])
-            rates, actuators = controller.body.rates, self.found.agents[name].actuators
-            self._ramp[actuators] = 0.0
-            if not command.reason:
-                damping = self._damping[actuators]
-                self._ramp[actuators] = model.opt.timestep * damping * command.acceleration[rates]
-                data.ctrl[actuators] = command.torques + damping * v[rates]
-        for place in range(self.timing.substeps):
-            data.ctrl += self._ramp  # the speed at the end of the step
-            if place:
-                mujoco.mj_step1(model, data)
-            mujoco.mj_step2(model, data)
-        mujoco.mj_step1(model, data)
+            if command.reason:
+                self.engine.hold(name)
+                continue
+            rates, damping = controller.body.rates, self.engine.damping[name]
+            rise = self._substep * damping * command.acceleration[rates]  # to the end of each step
+            self.engine.drive(name, command.torques + damping * v[rates], rise)
+        self.engine.advance(self.timing.substeps)
         self.number += 1
         return commands
 
-    def push(self, name: str, frame: str, force: Array) -> None:
-        """A force on the centre of mass of an agent's link, in the world [N], until another is said."""
-        body = self.found.model.body(f"{name}/{frame}").id
-        self.found.data.xfrc_applied[body, :3] = force
-
     def snapshot(self) -> Snapshot:
         """This moment."""
-        copied = mujoco.MjData(self.found.model)
-        mujoco.mj_copyData(copied, self.found.model, self.found.data)
-        return Snapshot(copied, self.number, {name: tuple(states) for name, states in self._seen.items()})
+        seen = {name: tuple(states) for name, states in self._seen.items()}
+        return Snapshot(self.engine.moment(), self.number, seen)
 
     def restore(self, moment: Snapshot) -> None:
         """Return to a moment."""
-        mujoco.mj_copyData(self.found.data, self.found.model, moment.data)
+        self.engine.restore(moment.moment)
         self.number = moment.number
         self._seen = {name: deque(moment.seen[name], each.maxlen) for name, each in self._seen.items()}

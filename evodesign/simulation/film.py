@@ -13,6 +13,7 @@ from PIL import Image
 
 from evodesign.errors import InputError
 from evodesign.posture.results import Array
+from evodesign.simulation.mujoco_engine import MujocoEngine
 from evodesign.simulation.push import PushOutcome, PushTest
 from evodesign.simulation.rollout import FRAME
 
@@ -42,9 +43,15 @@ class Filmed:
 
 
 def pushed_film(test: PushTest, outcome: PushOutcome) -> Filmed:
-    """A push whose states were kept."""
+    """A push whose states were kept.
+
+    Raises:
+        InputError: another engine than MuJoCo moved everything.
+    """
     agent = test.scene.controllers[outcome.push.agent].body.agent
-    model = test.scene.found.model
+    if not isinstance(test.scene.engine, MujocoEngine):
+        raise InputError("--video", "", "a push in MuJoCo, which draws films", "one in another engine")
+    model = test.scene.engine.found.model
     body = int(model.body(f"{agent.name}/{agent.pushed_frame}").id)
     return Filmed(model, outcome.states, outcome.forces, body)
 

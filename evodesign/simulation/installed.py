@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from enum import StrEnum
 from importlib.util import find_spec
 
 from evodesign.errors import InputError
@@ -20,16 +21,32 @@ def refuse_without_mujoco() -> None:
         raise InputError("simulate", "", wanted, "no package 'mujoco'")
 
 
-def refuse_without_a_controller() -> None:
-    """Refuse to push anybody without MuJoCo and DAQP.
+class EngineName(StrEnum):
+    """What moves those who are pushed."""
+
+    MUJOCO = "mujoco"
+    DRAKE = "drake"
+
+    @property
+    def label(self) -> str:
+        """As it writes itself."""
+        return {EngineName.MUJOCO: "MuJoCo", EngineName.DRAKE: "Drake"}[self]
+
+
+def refuse_without_a_controller(engine: EngineName = EngineName.MUJOCO) -> None:
+    """Refuse to push anybody without MuJoCo, DAQP and the engine.
 
     Raises:
         InputError: one of them is not installed.
     """
-    missing = next((name for name in ("mujoco", "daqp") if find_spec(name) is None), None)
+    second = engine is EngineName.DRAKE
+    needed = ("mujoco", "daqp", *(["pydrake"] if second else []))
+    missing = next((name for name in needed if find_spec(name) is None), None)
     if missing is not None:
-        wanted = "MuJoCo and DAQP installed (pip install 'evodesign[control]')"
-        raise InputError("push", "", wanted, f"no package '{missing}'")
+        wanted, extra = ("MuJoCo, DAQP and Drake", "drake") if second else ("MuJoCo and DAQP", "control")
+        raise InputError(
+            "push", "", f"{wanted} installed (pip install 'evodesign[{extra}]')", f"no package '{missing}'"
+        )
 
 
 def draw_without_a_screen() -> None:

@@ -32,7 +32,7 @@ from evodesign.mechanics.contact import Ground
 from evodesign.mechanics.payload import Grasp, Payload
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture, Array
-from evodesign.tree.frames import link_frames
+from evodesign.simulation.engine import placed_links
 from evodesign.tree.mjcf_write import mjcf_text
 from evodesign.tree.model import JointKind, Tree
 
@@ -130,7 +130,7 @@ def simulated_scene(
     load = _add_load(spec, scene.payload)
     frames = {}
     for agent in scene.agents:
-        frames[agent.name] = _frames(agent, trees[agent.name], postures[agent.name])
+        frames[agent.name] = placed_links(agent, trees[agent.name], postures[agent.name])
         _add_agent(spec, agent, trees[agent.name], scene.ground, give)
         for hand in agent.hands:
             _add_grasp(spec, load, scene.payload, agent, hand, frames[agent.name], give)
@@ -141,13 +141,6 @@ def simulated_scene(
     _place(found, postures, frames, height)
     mujoco.mj_forward(compiled, data)
     return found
-
-
-def _frames(agent: Agent, tree: Tree, posture: AgentPosture) -> Mapping[str, Placement]:
-    """world_from_link of an agent's links."""
-    world_from_agent = Placement.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, 0.0, agent.facing))
-    base = Placement.from_xyz_rpy(posture.base_position.tolist(), posture.base_angles.tolist())
-    return link_frames(tree, world_from_agent @ base, posture.joints)
 
 
 def _add_load(spec: Any, payload: Payload) -> Any:

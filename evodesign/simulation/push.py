@@ -70,7 +70,7 @@ class PushOutcome:
         load_off: largest distance of the load from its path [m].
         saturation: share of the time in which a motor of the pushed agent is at its limit [1].
         capture: largest distance of the pushed agent's capture point from the planned one [m].
-        states: MuJoCo's `qpos` at frames, shape (f, q); none unless they were asked for.
+        states: the engine's coordinates at frames, shape (f, q); none unless they were asked for.
         forces: the push at frames, in the world [N], shape (f, 3), likewise.
     """
 
@@ -119,9 +119,9 @@ class PushTest:
         lasting = round(push.seconds / scene.timing.step)
         for number in range(round(WATCHED_SECONDS / scene.timing.step)):
             now = force if number < lasting else np.zeros(3)
-            scene.push(push.agent, agent.pushed_frame, now)
+            scene.engine.push(push.agent, agent.pushed_frame, now)
             if frames and number % every == 0:
-                states.append(np.array(scene.found.data.qpos))
+                states.append(np.array(scene.engine.coordinates))
                 forces.append(now)
             watched.saw(scene.advance(), self.load_off())
             if watched.reason or (number >= lasting and watched.is_back):
@@ -142,9 +142,8 @@ class PushTest:
         """Distance of the load from its path now [m]."""
         if self._path is None:
             return 0.0
-        place = self.scene.found.data.xpos[self.scene.found.load]
         height = self._path[min(self.scene.number, len(self._path) - 1)]
-        return float(np.linalg.norm(place - [0.0, 0.0, height]))
+        return float(np.linalg.norm(self.scene.engine.load - [0.0, 0.0, height]))
 
 
 class _PushRecord:
@@ -173,8 +172,8 @@ class _PushRecord:
         """Another answer of the controllers, and where everything is after it."""
         scene, step = self._scene, self._scene.timing.step
         self.seconds += step
-        data, targets = scene.found.data, scene.targets()
-        if not (np.isfinite(data.qpos).all() and np.abs(data.qvel).max() < EXPLODED):
+        engine, targets = scene.engine, scene.targets()
+        if not (np.isfinite(engine.coordinates).all() and np.abs(engine.velocities).max() < EXPLODED):
             self.reason = "the simulation explodes"
             return
         self.load_off = max(self.load_off, load_off)
@@ -185,7 +184,7 @@ class _PushRecord:
         if max(*off.values(), load_off) > RECOVERED:
             self.last = self.seconds
         for name in scene.controllers:
-            root = data.xpos[scene.found.agents[name].root]
+            root = engine.state(name).root[:3]
             if np.linalg.norm(root - targets[name].coordinates[:3]) > FALLEN:
                 self.reason = f"{name} falls"
         broken = {what for name, each in commands.items() for what in self._broken_by(name, each)}

@@ -19,6 +19,8 @@ from evodesign.mechanics.scene import Scene
 from evodesign.motion.course import LiftCourse
 from evodesign.posture.results import AgentPosture
 from evodesign.simulation.controlled import ControlledScene, Targets, Timing
+from evodesign.simulation.engine import EngineMaker
+from evodesign.simulation.mujoco_engine import MujocoEngine
 from evodesign.simulation.push import PushTest
 from evodesign.tree.model import Tree
 
@@ -44,12 +46,14 @@ class PushConditions:
         timing: of the controllers.
         friction: of the floor, as a factor.
         mass: of the load, as a factor; controllers know nothing of either.
+        engine: that moves everything.
     """
 
     feedback: Feedback = field(default_factory=Feedback)
     timing: Timing = field(default_factory=Timing)
     friction: float = 1.0
     mass: float = 1.0
+    engine: EngineMaker = MujocoEngine
 
     def changed(self, scene: Scene) -> Scene:
         """The scene as it is."""
@@ -145,6 +149,7 @@ def _controlled(
         conditions.feedback,
         conditions.timing,
         planned=scene,
+        engine=conditions.engine,
     )
 
 

@@ -16,6 +16,8 @@ from evodesign.mechanics.payload import Payload
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture
 from evodesign.simulation.controlled import Timing
+from evodesign.simulation.engine import EngineMaker
+from evodesign.simulation.mujoco_engine import MujocoEngine
 from evodesign.simulation.push import Push, PushOutcome, PushTest
 from evodesign.simulation.pushed_plan import PushConditions, alone_test
 from evodesign.tree.model import Joint, JointKind, Link, Tree
@@ -43,12 +45,12 @@ class Pendulum:
         agent = Agent("robot", Role.ROBOT, tree, ("ankle",), (contact,), ("body",), torque_limits=limits)
         return Scene((agent,), Payload((0.1, 0.1, 0.1), 1.0))
 
-    def test(self, timing: Timing | None = None) -> PushTest:
+    def test(self, timing: Timing | None = None, engine: EngineMaker = MujocoEngine) -> PushTest:
         scene, weight = self.scene(), np.array([0.0, 0.0, (MASS + FOOT) * GRAVITY, 0.0, 0.0, 0.0])
         upright = AgentPosture(
             np.array([0.0, 0.0, HEIGHT]), np.zeros(3), {"ankle": 0.0}, {"ankle": 0.0}, {"foot": weight}
         )
-        conditions = PushConditions(timing=timing or Timing(2e-3, 4))
+        conditions = PushConditions(timing=timing or Timing(2e-3, 4), engine=engine)
         return alone_test(scene, {"robot": scene.robot.tree}, {"robot": upright}, conditions)
 
     def survived(self) -> float:

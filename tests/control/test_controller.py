@@ -19,7 +19,10 @@ from evodesign.mechanics.floating_base import ROOT
 from evodesign.mechanics.payload import Grasp
 from evodesign.mechanics.scene import Scene
 from evodesign.simulation.controlled import ControlledScene, Timing, hand_share
+from evodesign.simulation.engine import engine_named
+from evodesign.simulation.installed import EngineName
 from tests.simulation.conftest import HEIGHT, Held
+from tests.simulation.engines import ENGINES
 
 LIMIT = 60.0
 
@@ -30,10 +33,21 @@ def limited(held: Held) -> Scene:
     return held.scene.with_agents(replace(robot, torque_limits=dict.fromkeys(robot.joints, LIMIT)))
 
 
-def controlled(held: Held, scene: Scene, timing: Timing) -> ControlledScene:
+def controlled(
+    held: Held, scene: Scene, timing: Timing, engine: EngineName = EngineName.MUJOCO
+) -> ControlledScene:
     postures = held.solution.postures
     targets = {a.name: target_of(MovingBody(a, held.trees[a.name]), postures[a.name]) for a in scene.agents}
-    return ControlledScene(scene, held.trees, postures, HEIGHT, lambda _: targets, Feedback(), timing)
+    return ControlledScene(
+        scene,
+        held.trees,
+        postures,
+        HEIGHT,
+        lambda _: targets,
+        Feedback(),
+        timing,
+        engine=engine_named(engine),
+    )
 
 
 @pytest.mark.parametrize("grasp", Grasp)
@@ -45,7 +59,9 @@ def test_after_a_push_torques_give_the_accelerations_within_all_limits(
     scene = limited(held)
     found, saturated = controlled(held, scene, Timing()), 0
     for number in range(60):
-        found.push("robot", scene.robot.pushed_frame, np.array([-120.0 if number < 25 else 0.0, 60.0, 0.0]))
+        found.engine.push(
+            "robot", scene.robot.pushed_frame, np.array([-120.0 if number < 25 else 0.0, 60.0, 0.0])
+        )
         states = {name: found.state(name) for name in found.controllers}
         for name, command in found.advance().items():
             assert command.reason == ""
@@ -92,15 +108,18 @@ def test_a_controller_that_finds_no_torques_says_so_in_a_sentence(held: Held) ->
         assert not each.torques.any()
 
 
+@pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("grasp", Grasp)
-def test_a_hold_without_a_push_is_the_static_plan(held_with: Callable[[Grasp], Held], grasp: Grasp) -> None:
-    """At first to rounding, and after half a second in MuJoCo within 2 % of the plan's peak torque.
+def test_a_hold_without_a_push_is_the_static_plan(
+    held_with: Callable[[Grasp], Held], grasp: Grasp, engine: EngineName
+) -> None:
+    """At first to rounding, and after half a second of simulation within 2 % of the plan's peak torque.
 
     Steps are short, for floors are the softer the longer they are, and knees that are straight bend where a
     floor gives way by a hundredth of a millimetre.
     """
     held = held_with(grasp)
-    found = controlled(held, held.scene, Timing(substeps=32))
+    found = controlled(held, held.scene, Timing(substeps=32), engine)
     for share, after in ((1e-5, 1), (0.02, 125)):
         commands: dict[str, Command] = {}
         while found.number < after:

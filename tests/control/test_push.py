@@ -9,19 +9,25 @@ import pytest
 
 from evodesign.control.gains import Feedback
 from evodesign.simulation.controlled import Timing
+from evodesign.simulation.engine import engine_named
+from evodesign.simulation.installed import EngineName
 from evodesign.simulation.push import Push, PushOutcome, PushTest
 from evodesign.simulation.push_margin import least_margin, margin_in, margins
 from evodesign.simulation.pushed_plan import PushConditions, alone_test, hold_test
 from tests.control.pendulum import Pendulum
 from tests.simulation.conftest import HEIGHT, Held
+from tests.simulation.engines import ENGINES
 
 
 @pytest.mark.parametrize(
     "pendulum", [Pendulum(0.16), Pendulum(0.24), Pendulum(0.24, 20.0), Pendulum(0.24, 40.0)], ids=str
 )
-def test_a_pendulum_survives_until_its_capture_point_leaves_the_sole(pendulum: Pendulum) -> None:
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_pendulum_survives_until_its_capture_point_leaves_the_sole(
+    pendulum: Pendulum, engine: EngineName
+) -> None:
     """The largest impulse is the closed form's within 5 %, so it grows with sole and torque as that does."""
-    tests, impulse = pendulum.test(), pendulum.survived()
+    tests, impulse = pendulum.test(engine=engine_named(engine)), pendulum.survived()
     pushed = [tests.pushed(Push(share * impulse, 0.0, seconds=0.02)) for share in (0.95, 1.05)]
     assert [each.survived for each in pushed] == [True, False]
     assert pushed[1].reason == "robot falls"
@@ -78,7 +84,10 @@ def pushed_hold(held: Held) -> PushTest:
     return hold_test(held.scene, held.trees, held.solution.postures, HEIGHT, PushConditions())
 
 
-def test_a_push_is_survived_or_not_and_told_alike_each_time(pushed_hold: PushTest) -> None:
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_push_is_survived_or_not_and_told_alike_each_time(held: Held, engine: EngineName) -> None:
+    conditions = PushConditions(engine=engine_named(engine))
+    pushed_hold = hold_test(held.scene, held.trees, held.solution.postures, HEIGHT, conditions)
     weak, strong, again = (pushed_hold.pushed(Push(each, 0.0)) for each in (8.0, 80.0, 8.0))
     assert weak.survived
     assert weak.recovery is not None
