@@ -9,6 +9,8 @@ from typing import Annotated
 
 import typer
 
+from evodesign.simulation.installed import EngineName
+
 BAD_INPUT = 2
 """Exit code of what a user gave wrong."""
 
@@ -61,6 +63,10 @@ SymmetryName = Annotated[
         help="Postures: auto, on, off or polish.",
         show_default="as in the problem",
     ),
+]
+Engine = Annotated[
+    EngineName,
+    typer.Option("--engine", metavar="NAME", help="What moves those who are pushed: mujoco or drake."),
 ]
 Evaluations = Annotated[
     int | None,

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from evodesign.cli import damage
-from evodesign.cli.options import CORES, Damaged, Design, Jobs, Json, RunPath
+from evodesign.cli.options import CORES, Damaged, Design, Engine, Jobs, Json, RunPath
 from evodesign.errors import InputError
+from evodesign.simulation.installed import EngineName, draw_without_a_screen, refuse_without_a_controller
 
 if TYPE_CHECKING:
     from evodesign.evaluation.pushes import PushedDesign
@@ -51,14 +52,13 @@ def push(
         float, typer.Option(metavar="RAD_S", help="Bandwidth of the controllers [rad/s].")
     ] = 8.0,
     damping: Annotated[float, typer.Option(metavar="RATIO", help="Their damping ratio.")] = 1.0,
+    engine: Engine = EngineName.MUJOCO,
     jobs: Jobs = CORES,
     json: Json = False,
     damaged: Damaged = False,
 ) -> None:
-    """Push a design's robot in MuJoCo, under whole-body controllers, to the largest impulses it survives."""
-    from evodesign.simulation.installed import refuse_without_a_controller
-
-    refuse_without_a_controller()
+    """Push a design's robot, under whole-body controllers, to the largest impulses it survives."""
+    refuse_without_a_controller(engine)
     from evodesign.cli.output import console, print_json, show_notes
     from evodesign.cli.progress import precompute_progress
     from evodesign.cli.tables.push import margins_table
@@ -66,10 +66,12 @@ def push(
     from evodesign.evaluation.pushes import found_margins, margins_json
     from evodesign.report.opened_design import open_design
     from evodesign.runlog.run import read_run
+    from evodesign.simulation.engine import engine_named
     from evodesign.simulation.push_margin import DIRECTIONS
     from evodesign.simulation.pushed_plan import PushConditions
 
-    conditions, logged = PushConditions(Feedback(frequency, damping)), read_run(run)
+    conditions = PushConditions(Feedback(frequency, damping), engine=engine_named(engine))
+    logged = read_run(run)
     show_notes(logged.notes)
     with precompute_progress() as progress:
         opened = open_design(logged, design, jobs, progress)
@@ -77,9 +79,10 @@ def push(
         turns = [math.radians(each) for each in direction or ()]
         found = found_margins(pushed, conditions, turns or DIRECTIONS, spread=spread)
     if json:
-        print_json({"run": str(run), "design": design, **margins_json(found, conditions)})
+        header = {"run": str(run), "design": design, "engine": engine}
+        print_json({**header, **margins_json(found, conditions)})
     else:
-        title = f"{logged.header.problem_name}: pushes that design {design} survives"
+        title = f"{logged.header.problem_name}: pushes that design {design} survives in {engine.label}"
         console().print(margins_table(title, found))
     damage.end(logged, accepted=damaged)
 
@@ -90,6 +93,7 @@ def push_once(
     push: tuple[float, float],
     asked: tuple[Sequence[float], str | None, str | None],
     feedback: tuple[float, float],
+    engine: EngineName,
     jobs: int,
     video: Path | None,
     *,
@@ -103,18 +107,17 @@ def push_once(
         push: impulse [N s], and direction from forwards to the left [degrees].
         asked: heights [m], person and load; empty or None for all.
         feedback: bandwidth [rad/s] and damping ratio of the controllers.
+        engine: that moves everything.
         jobs: processes that may be used.
         video: where to write a film; None for none.
         json: whether JSON is printed.
     Raises:
-        InputError: an impulse that is not positive, or nothing to push.
+        InputError: an impulse that is not positive, nothing to push, or a film of another engine than MuJoCo.
     """
-    from evodesign.simulation.installed import draw_without_a_screen, refuse_without_a_controller
-
     impulse, turn = push
     if not 0.0 < impulse < math.inf:
         raise InputError("--push", "", "a positive number", f"{impulse}")
-    refuse_without_a_controller()
+    refuse_without_a_controller(engine)
     draw_without_a_screen()
     from evodesign.cli.output import console, print_json, write_bytes
     from evodesign.cli.progress import precompute_progress
@@ -123,6 +126,7 @@ def push_once(
     from evodesign.evaluation.pushes import outcome_json
     from evodesign.report.opened_design import open_design
     from evodesign.runlog.run import read_run
+    from evodesign.simulation.engine import engine_named
     from evodesign.simulation.film import film, pushed_film
     from evodesign.simulation.push import Push
     from evodesign.simulation.pushed_plan import PushConditions
@@ -130,7 +134,7 @@ def push_once(
     logged = read_run(run)
     with precompute_progress() as progress:
         pushed = pushed_in(open_design(logged, design, jobs, progress), *asked, alone=False)
-        tests = pushed.tests(PushConditions(Feedback(*feedback)))
+        tests = pushed.tests(PushConditions(Feedback(*feedback), engine=engine_named(engine)))
         given = Push(impulse, math.radians(turn))
         outcomes = {name: test.pushed(given, frames=video is not None) for name, test in tests.items()}
     if video is not None:
@@ -139,9 +143,10 @@ def push_once(
         )
     if json:
         pushes = [outcome_json(name, each) for name, each in outcomes.items()]
-        print_json({"run": str(run), "design": design, "pushes": pushes})
+        print_json({"run": str(run), "design": design, "engine": engine, "pushes": pushes})
     else:
-        title = f"{logged.header.problem_name}: design {design} pushed by {impulse:g} N s to {turn:g} degrees"
+        pushed_so = f"pushed by {impulse:g} N s to {turn:g} degrees in {engine.label}"
+        title = f"{logged.header.problem_name}: design {design} {pushed_so}"
         console().print(pushes_table(title, outcomes))
 
 

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from evodesign.cli import damage
-from evodesign.cli.options import CORES, Damaged, Design, Jobs, Json, ProfileName, RunPath
+from evodesign.cli.options import CORES, Damaged, Design, Engine, Jobs, Json, ProfileName, RunPath
 from evodesign.errors import InputError
+from evodesign.simulation.installed import EngineName, draw_without_a_screen, refuse_without_mujoco
 
 if TYPE_CHECKING:
     from evodesign.evaluation.progress import PrecomputeProgress
@@ -55,6 +56,7 @@ def simulate(
     direction: Annotated[
         float, typer.Option(metavar="DEG", help="To where, from forwards to the left.")
     ] = 0.0,
+    engine: Engine = EngineName.MUJOCO,
     mcap: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write a recording for Foxglove and Lichtblick.")
     ] = None,
@@ -66,14 +68,15 @@ def simulate(
     damaged: Damaged = False,
 ) -> None:
     """Simulate holds and lifts of a design in MuJoCo: contacts, motors, feedback; how far from the plan."""
-    from evodesign.simulation.installed import draw_without_a_screen, refuse_without_mujoco
-
     if push is not None:
         from evodesign.cli.push import push_once
 
         where = (height or (), person, payload)
-        push_once(run, design, (push, direction), where, (frequency, damping), jobs, video, json=json)
+        gains = (frequency, damping)
+        push_once(run, design, (push, direction), where, gains, engine, jobs, video, json=json)
         return
+    if engine is not EngineName.MUJOCO:
+        raise InputError("--engine", "", "mujoco, which holds and lifts without a push ask for", engine)
     if (begin is None) != (end is None):
         raise InputError("--from", "", "both --from and --to, or neither", "one of them")
     refuse_without_mujoco()

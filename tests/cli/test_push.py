@@ -63,6 +63,7 @@ def test_a_push_is_filmed_or_a_sentence_says_that_mujoco_cannot_draw(tmp_path: P
         ("push", ("--damping", "0"), "damping"),
         ("simulate", ("--push", "0"), "--push: wanted a positive number"),
         ("simulate", ("--push", "nan"), "--push: wanted a positive number"),
+        ("simulate", ("--engine", "drake"), "--engine: wanted mujoco.*found drake"),
     ],
 )
 def test_what_there_is_not_is_refused(command: str, options: tuple[str, ...], words: str) -> None:
@@ -70,7 +71,26 @@ def test_what_there_is_not_is_refused(command: str, options: tuple[str, ...], wo
         run(command, *options)
 
 
-def test_without_daqp_a_sentence_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("evodesign.simulation.installed.find_spec", lambda name: name == "mujoco" or None)
-    with pytest.raises(InputError, match=r"pip install 'evodesign\[control\]'.*'daqp'"):
-        run("push")
+@pytest.mark.parametrize(
+    ("options", "extra", "missing"), [((), "control", "daqp"), (("--engine", "drake"), "drake", "pydrake")]
+)
+def test_without_what_it_needs_a_sentence_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, options: tuple[str, ...], extra: str, missing: str
+) -> None:
+    monkeypatch.setattr("evodesign.simulation.installed.find_spec", lambda name: name != missing or None)
+    with pytest.raises(InputError, match=rf"pip install 'evodesign\[{extra}\]'.*'{missing}'"):
+        run("push", *options)
+
+
+@pytest.mark.needs_drake
+def test_a_push_in_drake_is_asked_for_by_name_and_not_filmed(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    pushed = ("simulate", *HOLD, "--engine", "drake", "--direction", "90", "--push")
+    for impulse, survived in (("2", True), ("200", False)):
+        run(*pushed, impulse, "--json")
+        told = json.loads(capsys.readouterr().out)
+        assert told["engine"] == "drake"
+        assert told["pushes"][0]["survived"] is survived
+    with pytest.raises(InputError, match="--video: wanted a push in MuJoCo"):
+        run(*pushed, "2", "--video", str(tmp_path / "film.gif"))
