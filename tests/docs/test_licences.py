@@ -13,7 +13,7 @@ REPOSITORY = Path(__file__).parents[2]
 NOTES = (REPOSITORY / "THIRD_PARTY_LICENSES.md").read_text(encoding="utf-8")
 ROW = re.compile(r"^\| ([\w-]+) \| (.+?) \| (.+?) \| `(.+?)` \| (.+?) \|$", re.MULTILINE)
 ROWS = ROW.findall(NOTES)
-EXTRAS = ("cad", "control", "dask", "measured", "mjcf", "notebook", "simulate")
+EXTRAS = ("cad", "control", "dask", "drake", "measured", "mjcf", "notebook", "simulate")
 
 
 def test_every_dependency_has_a_row() -> None:
