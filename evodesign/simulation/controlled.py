@@ -5,11 +5,9 @@ Controllers answer at a rate of their own; MuJoCo moves on in finer steps. Betwe
     tau = tau* + d (v* + a* t - v),        d = 2 z w I
 
 with the torques tau* and accelerations a* of the answer, the speeds v* that it was given, and I of each joint
-as in `feedback`: feet, which are light, would flutter under torques alone. d is taken at the end of a step,
-by h d in the joints' inertia (`rollout`). A controller knows the state of its own body, as it was some time
-ago where sensors are late, and the plan; of the others it knows nothing.
-
-Source: Tan, Liu and Turk 2011 (damping at the end of a step).
+as in `feedback`: feet, which are light, would flutter under torques alone. d is taken at the end of a step
+(`set_damping`). A controller knows the state of its own body, as it was some time ago where sensors are late,
+and the plan; of the others it knows nothing.
 """
 
 from __future__ import annotations
@@ -29,7 +27,7 @@ from evodesign.control.target import Target
 from evodesign.mechanics.payload import Grasp
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture, Array
-from evodesign.simulation.feedback import joint_inertias
+from evodesign.simulation.feedback import joint_inertias, set_damping
 from evodesign.simulation.model import simulated_scene
 from evodesign.tree.model import Tree
 
@@ -118,11 +116,10 @@ class ControlledScene:
                 body, known.ground, limits, hand_share(known), feedback
             )
         model = self.found.model
-        self._ramp, self._damping = np.zeros(model.nu), np.zeros(model.nu)
+        self._ramp = np.zeros(model.nu)
         for parts in self.found.agents.values():
-            self._damping[parts.actuators] = feedback.rate * joint_inertias(self.found, parts)
-            model.dof_armature[parts.rates] += model.opt.timestep * self._damping[parts.actuators]
-        model.actuator_biasprm[:, 2] = -self._damping
+            set_damping(self.found, parts, joint_inertias(self.found, parts), feedback)
+        self._damping = -model.actuator_biasprm[:, 2]
         mujoco.mj_forward(model, self.found.data)
         self._seen = {name: deque([self.state(name)], timing.delay + 1) for name in self.controllers}
 
