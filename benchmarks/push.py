@@ -25,14 +25,14 @@ from numpy.typing import NDArray
 import evodesign.control.controller as controller
 from evodesign.control.quadratic import QuadraticSolution, least_squares
 from evodesign.evaluation.progress import SILENT
-from evodesign.evaluation.pushes import PERTURBED, PushedDesign
+from evodesign.evaluation.pushes import PERTURBED, pushed_holds
 from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.report.opened_design import open_design
 from evodesign.runlog.run import read_run
 from evodesign.simulation.controlled import Timing
 from evodesign.simulation.push import Push
 from evodesign.simulation.push_margin import Margin, least_margin
-from evodesign.simulation.pushed_plan import PushConditions
+from evodesign.simulation.pushed_plan import PushConditions, PushedDesign
 
 Array = NDArray[np.float64]
 Program = tuple[Array, Array, Array, Array, Array]
@@ -41,13 +41,14 @@ Program = tuple[Array, Array, Array, Array, Array]
 def first_hold(run: Path, design: int) -> PushedDesign:
     """Where the robot of a design is pushed."""
     opened = open_design(read_run(run), design, 1, SILENT)
-    return PushedDesign(opened.rebuilt.problem.scenes, opened.scene_set().robot, opened.cases[:1])
+    scenes, robot = opened.rebuilt.problem.scenes, opened.scene_set().robot
+    return PushedDesign(tuple(pushed_holds(scenes, robot, opened.cases[:1])))
 
 
 def margin(pushed: PushedDesign, conditions: PushConditions) -> tuple[Margin, float]:
     """The least one, and the processor time that it takes [s]."""
     began = time.process_time()
-    found = least_margin(pushed.tests(conditions), ROBOT, pushed.mass())
+    found = least_margin(pushed.tests(conditions), ROBOT, pushed.mass)
     assert found is not None
     return found, time.process_time() - began
 
@@ -62,13 +63,13 @@ def designs(run: Path, count: int, conditions: Mapping[str, PushConditions]) -> 
         alone, spent = margin(replace(pushed, alone=True), PushConditions())
         torques = dict.fromkeys((ROBOT, HUMAN), 0.0)
         for role in torques:
-            agents = [own for name, own in pushed.holds[0].agents.items() if name.startswith(role)]
-            torques[role] = float(np.linalg.norm([t for own in agents for t in own.torques_n_m.values()]))
-        rows.append([pushed.mass(), *torques.values(), found["as planned"][0].impulse, alone.impulse])
+            agents = [own for name, own in pushed.plans[0].postures.items() if name.startswith(role)]
+            torques[role] = float(np.linalg.norm([own.torque_norm for own in agents]))
+        rows.append([pushed.mass, *torques.values(), found["as planned"][0].impulse, alone.impulse])
         told = ", ".join(f"{name} {m.impulse:.2f} N s ({s:.1f} s)" for name, (m, s) in found.items())
         weakest = found["as planned"][0]
         print(
-            f"design {each.number}, {pushed.mass():.1f} kg: {told}, "
+            f"design {each.number}, {pushed.mass:.1f} kg: {told}, "
             f"alone {alone.impulse:.2f} ({spent:.1f} s); "
             f"to {np.degrees(weakest.direction):.0f} degrees: {weakest.reason}",
             flush=True,

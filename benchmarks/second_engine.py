@@ -93,7 +93,7 @@ def compared(
     for degrees in directions:
         push = Push(0.0, math.radians(degrees))
         asked = (mujoco, drake) if margins else (mujoco,)
-        found = tuple(margin_in(test, name, push, where.mass()) for test in asked)
+        found = tuple(margin_in(test, name, push, where.mass) for test in asked)
         given = [replace(push, impulse=share * found[0].impulse) for share in SHARES]
         yield degrees, Compared(found, tuple((pushed(mujoco, each), pushed(drake, each)) for each in given))
 

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from evodesign.cli.evaluate import chosen_design
-from evodesign.cli.options import CORES, Jobs, Json, ProblemPath, ProfileName, SymmetryName
+from evodesign.cli.options import CORES, Jobs, Json, Knots, ProblemPath, ProfileName, SymmetryName
 
 
 def lift(
@@ -25,7 +25,7 @@ def lift(
     ] = None,
     seconds: Annotated[float, typer.Option(metavar="S", help="Time that the lift takes [s].")] = 1.5,
     profile: ProfileName = "minimum_jerk",
-    knots: Annotated[int, typer.Option(metavar="N", help="Knots of the motion.")] = 12,
+    knots: Knots = 12,
     csv: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write joints and torques over time.")
     ] = None,

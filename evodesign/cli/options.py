@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -68,6 +69,23 @@ Engine = Annotated[
     EngineName,
     typer.Option("--engine", metavar="NAME", help="What moves those who are pushed: mujoco or drake."),
 ]
+HEIGHT = partial(typer.Option, "--height", metavar="M", help="Only holds at this height [m]; again for more.")
+Heights = Annotated[list[float] | None, HEIGHT(show_default="all")]
+PushedHeights = Annotated[list[float] | None, HEIGHT(show_default="lowest and highest")]
+Person = Annotated[
+    str | None,
+    typer.Option("--person", metavar="NAME", help="Only with this person.", show_default="all"),
+]
+Payload = Annotated[
+    str | None,
+    typer.Option("--payload", metavar="NAME", help="Only with this load.", show_default="all"),
+]
+Knots = Annotated[int, typer.Option("--knots", metavar="N", help="Knots of the lift.")]
+Frequency = Annotated[
+    float,
+    typer.Option("--frequency", metavar="RAD_S", help="Natural frequency of the feedback [rad/s]."),
+]
+Damping = Annotated[float, typer.Option("--damping", metavar="RATIO", help="Its damping ratio.")]
 Evaluations = Annotated[
     int | None,
     typer.Option(min=1, metavar="N", help="Total evaluations of the run.", show_default="as in the problem"),

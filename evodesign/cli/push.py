@@ -10,32 +10,35 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from evodesign.cli import damage
-from evodesign.cli.options import CORES, Damaged, Design, Engine, Jobs, Json, RunPath
+from evodesign.cli.options import (
+    CORES,
+    Damaged,
+    Damping,
+    Design,
+    Engine,
+    Frequency,
+    Jobs,
+    Json,
+    Payload,
+    Person,
+    PushedHeights,
+    RunPath,
+)
 from evodesign.errors import InputError
 from evodesign.simulation.installed import EngineName, draw_without_a_screen, refuse_without_a_controller
 
 if TYPE_CHECKING:
-    from evodesign.evaluation.pushes import PushedDesign
+    from evodesign.evaluation.progress import PrecomputeProgress
     from evodesign.report.opened_design import OpenedDesign
+    from evodesign.simulation.pushed_plan import PushedDesign
 
 
 def push(
     run: RunPath,
     design: Design,
-    height: Annotated[
-        list[float] | None,
-        typer.Option(
-            metavar="M",
-            help="Only holds at this height [m]; again for more.",
-            show_default="lowest and highest",
-        ),
-    ] = None,
-    person: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Only with this person.", show_default="all")
-    ] = None,
-    payload: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Only with this load.", show_default="all")
-    ] = None,
+    height: PushedHeights = None,
+    person: Person = None,
+    payload: Payload = None,
     direction: Annotated[
         list[float] | None,
         typer.Option(
@@ -48,10 +51,8 @@ def push(
     spread: Annotated[
         bool, typer.Option("--spread", help="Also with other friction, load and late sensors.")
     ] = False,
-    frequency: Annotated[
-        float, typer.Option(metavar="RAD_S", help="Bandwidth of the controllers [rad/s].")
-    ] = 8.0,
-    damping: Annotated[float, typer.Option(metavar="RATIO", help="Their damping ratio.")] = 1.0,
+    frequency: Frequency = 8.0,
+    damping: Damping = 1.0,
     engine: Engine = EngineName.MUJOCO,
     jobs: Jobs = CORES,
     json: Json = False,
@@ -75,7 +76,7 @@ def push(
     show_notes(logged.notes)
     with precompute_progress() as progress:
         opened = open_design(logged, design, jobs, progress)
-        pushed = pushed_in(opened, height or (), person, payload, alone=alone)
+        pushed = pushed_in(opened, (height or (), person, payload), jobs, progress, alone=alone)
         turns = [math.radians(each) for each in direction or ()]
         found = found_margins(pushed, conditions, turns or DIRECTIONS, spread=spread)
     if json:
@@ -133,7 +134,7 @@ def push_once(
 
     logged = read_run(run)
     with precompute_progress() as progress:
-        pushed = pushed_in(open_design(logged, design, jobs, progress), *asked, alone=False)
+        pushed = pushed_in(open_design(logged, design, jobs, progress), asked, jobs, progress)
         tests = pushed.tests(PushConditions(Feedback(*feedback), engine=engine_named(engine)))
         given = Push(impulse, math.radians(turn))
         outcomes = {name: test.pushed(given, frames=video is not None) for name, test in tests.items()}
@@ -152,24 +153,37 @@ def push_once(
 
 def pushed_in(
     opened: OpenedDesign,
-    heights: Sequence[float],
-    person: str | None,
-    payload: str | None,
+    asked: tuple[Sequence[float], str | None, str | None],
+    jobs: int,
+    progress: PrecomputeProgress,
     *,
-    alone: bool,
+    alone: bool = False,
 ) -> PushedDesign:
-    """The holds that are asked for: the lowest and highest ones unless heights are said."""
-    from evodesign.evaluation.pushes import PushedDesign
-    from evodesign.evaluation.simulations import picked_cases, picked_holds
+    """The holds and lifts that are asked for; the search's own unless heights are said.
 
-    cases = picked_holds(picked_cases(opened.cases, person, payload), heights)
-    if not heights:
-        ends = {
-            end(
-                (each for each in cases if each.case.pair == pair), key=lambda detail: detail.height_m
-            ).case.name
-            for pair in {each.case.pair for each in cases}
-            for end in (min, max)
-        }
-        cases = tuple(each for each in cases if each.case.name in ends)
-    return PushedDesign(opened.rebuilt.problem.scenes, opened.scene_set().robot, cases, alone=alone)
+    Args:
+        opened: the design.
+        asked: heights of holds [m], person and load; empty or None for all.
+        jobs: processes that may be used.
+        progress: of the lifts' precomputation.
+        alone: whether the robot stands alone.
+    """
+    from evodesign.cli.output import show_notes
+    from evodesign.evaluation.pushes import pushed_holds
+    from evodesign.evaluation.simulations import picked_cases, picked_holds
+    from evodesign.simulation.pushed_plan import PushedDesign, PushedPlan, pushed_cases
+    from evodesign.tasks import Lift
+
+    heights, person, payload = asked
+    cases = picked_cases(opened.cases, person, payload)
+    holds = picked_holds(cases, heights)
+    picked = [detail.case for detail in holds] if heights else pushed_cases([each.case for each in cases])
+    scenes, robot = opened.rebuilt.problem.scenes, opened.scene_set().robot
+    plans = pushed_holds(scenes, robot, [detail for detail in holds if detail.case in picked])
+    for lift in dict.fromkeys(case.task for case in picked if isinstance(case.task, Lift)):
+        solved = opened.lifts(lift, jobs, progress)
+        for case in (each for each in picked if each.task == lift):
+            show_notes(f"no lift {case.name}: {s.reason}" for s in [solved[case.pair]] if not s.solved)
+            if (course := solved[case.pair].course) is not None:
+                plans.append(PushedPlan.lift(scenes, robot, case, course))
+    return PushedDesign(tuple(plans), alone)

@@ -9,31 +9,36 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from evodesign.cli import damage
-from evodesign.cli.options import CORES, Damaged, Design, Engine, Jobs, Json, ProfileName, RunPath
+from evodesign.cli.options import (
+    CORES,
+    Damaged,
+    Damping,
+    Design,
+    Engine,
+    Frequency,
+    Heights,
+    Jobs,
+    Json,
+    Knots,
+    Payload,
+    Person,
+    ProfileName,
+    RunPath,
+)
 from evodesign.errors import InputError
 from evodesign.simulation.installed import EngineName, draw_without_a_screen, refuse_without_mujoco
 
 if TYPE_CHECKING:
-    from evodesign.evaluation.progress import PrecomputeProgress
     from evodesign.evaluation.simulations import SimulatedCase
-    from evodesign.motion.solution import LiftSolution
     from evodesign.report.opened_design import OpenedDesign
-    from evodesign.tasks import Lift
 
 
 def simulate(
     run: RunPath,
     design: Design,
-    height: Annotated[
-        list[float] | None,
-        typer.Option(metavar="M", help="Only holds at this height [m]; again for more.", show_default="all"),
-    ] = None,
-    person: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Only with this person.", show_default="all")
-    ] = None,
-    payload: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Only with this load.", show_default="all")
-    ] = None,
+    height: Heights = None,
+    person: Person = None,
+    payload: Payload = None,
     begin: Annotated[
         float | None,
         typer.Option("--from", metavar="M", help="Another lift: height of the load at the start [m]."),
@@ -44,11 +49,9 @@ def simulate(
         typer.Option(metavar="S", help="Time [s].", show_default="2 for a hold, 1.5 for a lift"),
     ] = None,
     profile: ProfileName = "minimum_jerk",
-    knots: Annotated[int, typer.Option(metavar="N", help="Knots of the lift.")] = 24,
-    frequency: Annotated[
-        float, typer.Option(metavar="RAD_S", help="Natural frequency of the joints' feedback [rad/s].")
-    ] = 8.0,
-    damping: Annotated[float, typer.Option(metavar="RATIO", help="Its damping ratio.")] = 1.0,
+    knots: Knots = 24,
+    frequency: Frequency = 8.0,
+    damping: Damping = 1.0,
     push: Annotated[
         float | None,
         typer.Option(metavar="N_S", help="Push the robot in its holds, by this impulse [N s] on its trunk."),
@@ -114,7 +117,7 @@ def simulate(
             lifts = [Lift(begin, end, 1.5 if seconds is None else seconds, profile_named(profile), knots)]
         pairs = {detail.case.pair for detail in cases}
         for asked in lifts:
-            solved = {p: s for p, s in _lifts(opened, asked, jobs, progress).items() if p in pairs}
+            solved = {p: s for p, s in opened.lifts(asked, jobs, progress).items() if p in pairs}
             show_notes(f"no lift {s.lift}: {s.reason}" for s in solved.values() if not s.solved)
             simulations += simulated_lifts(built.scenes, robot, solved, feedback)
     if mcap is not None:
@@ -133,20 +136,6 @@ def simulate(
             if agent.at_limit
         )
     damage.end(logged, accepted=damaged)
-
-
-def _lifts(
-    opened: OpenedDesign, asked: Lift, jobs: int, progress: PrecomputeProgress
-) -> dict[tuple[str, str], LiftSolution]:
-    """The lift with every person and load, solved."""
-    from evodesign.evaluation.factory import evaluator_of
-    from evodesign.evaluation.lifts import Lifts
-
-    problem, values = opened.rebuilt.problem, opened.evaluation.assessment.design
-    evaluator = evaluator_of(problem, jobs, progress, [asked])
-    return Lifts(evaluator, evaluator.known).solve(
-        [values[each.name] for each in problem.space.parameters], asked
-    )
 
 
 def _write_recording(path: Path, opened: OpenedDesign, simulations: Sequence[SimulatedCase]) -> None:

@@ -32,7 +32,6 @@ from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.problem.build import DesignProblem
 from evodesign.quantities.demand import SizedRobot
 from evodesign.quantities.design_result import DesignResult
-from evodesign.quantities.push_quantities import DesignPushes
 from evodesign.quantities.stance_model import StanceModel
 from evodesign.records import Case, Hold, Lift, Status
 from evodesign.tree.equip import mounted_solids
@@ -210,7 +209,6 @@ class _OneDesign:
             reach=reach,
             cases=cases,
             paper=problem.joint,
-            pushes=None if problem.pushes is None else DesignPushes(problem.pushes),
             people_highest=min(
                 (person.highest for person in solver.known.person_reaches.values()), default=None
             ),

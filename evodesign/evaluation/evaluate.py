@@ -143,17 +143,19 @@ class Evaluator:
         if any(solution.status is Status.BODIES_OVERLAP for solution in failed):  # nothing else is known
             known = tuple(constraint for constraint in constraints if constraint.name == BODIES_APART)
         cases = tuple(case_outcome(solution, native=self._native) for solution in result.cases)
-        missed, objectives = missed_height(reach, cases), self.problem.objectives
+        missed, pushes = missed_height(reach, cases), self.problem.pushes
         constrained = objective_values(unsimulated(known), result)
         violation = total_violation(unsimulated(constraints), constrained, missed)
-        if violation == 0.0:
+        if violation == 0.0 and pushes is not None:
+            from evodesign.evaluation.pushes import found_pushes  # MuJoCo takes its time to load
+
+            names = [*(each.name for each in self.problem.objectives), *(each.name for each in constraints)]
+            result = replace(result, pushes=found_pushes(result, pushes, names))
             constrained = objective_values(known, result)
             violation = total_violation(constraints, constrained, missed)
-        else:  # simulations take seconds
-            objectives = unsimulated(objectives)
         return Assessment(
             design=dict(self.problem.space.named(values)),
-            objectives=objective_values(objectives, result),
+            objectives=objective_values(self.problem.objectives, result),
             violation=violation,
             status=_status(result),
             reason=failed[0].reason if failed else "solved",

@@ -77,7 +77,7 @@ def assessed_gradients(
         values: of the design, one number per parameter.
         result: what was computed of it.
     """
-    design = _Design(problem, sensitivities, tuple(values), replace(result, pushes=None))
+    design = _Design(problem, sensitivities, tuple(values), result)
     names = dict.fromkeys([*(o.name for o in problem.objectives), *(c.name for c in problem.constraints)])
     found = {name: design.gradient(name) for name in names} | {HEIGHT: design.of_height()}
     records = problem.space.records

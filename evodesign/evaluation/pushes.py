@@ -2,89 +2,89 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from evodesign.errors import InputError
 from evodesign.evaluation.logged_posture import logged_posture
 from evodesign.mechanics.agent import ROBOT
-from evodesign.mechanics.scene import Scene, scene_of
-from evodesign.motion.solution import LiftSolution
+from evodesign.mechanics.scene import Scene
+from evodesign.motion.solution import MotionCase
+from evodesign.quantities.design_result import DesignResult
+from evodesign.quantities.push_quantities import (
+    ALONE,
+    MARGIN,
+    RECOVERY,
+    SATURATION,
+    TRACKING,
+    FoundPushes,
+    PushSettings,
+)
 from evodesign.records import CaseDetail
-from evodesign.simulation.push import Push, PushOutcome, PushTest
-from evodesign.simulation.push_margin import Margin, margin_in, margins
-from evodesign.simulation.pushed_plan import PushConditions, alone_test, hold_test, lift_tests
+from evodesign.simulation.push import Push, PushOutcome
+from evodesign.simulation.push_margin import DIRECTIONS, Margin, least_margin, margin_in, margins
+from evodesign.simulation.pushed_plan import PushConditions, PushedDesign, PushedPlan, pushed_cases
 from evodesign.tree.model import Tree
 
 PERTURBED = {"friction": 0.8, "mass": 1.05, "delay": 1}
 """What may be otherwise: friction and the load's mass by these factors, sensors late by so many answers."""
 
 
-@dataclass(frozen=True, slots=True)
-class PushedDesign:
-    """Where a robot of a design is pushed.
+def pushed_holds(scenes: Sequence[Scene], robot: Tree, holds: Sequence[CaseDetail]) -> list[PushedPlan]:
+    """Holds of the log in which a robot is pushed.
 
     Args:
         scenes: of the problem.
         robot: the design's tree.
         holds: of the design, with their postures.
-        lifts: of the design, by person and load.
-        alone: whether the robot stands alone, in the postures of its holds.
     """
+    return [
+        PushedPlan.hold(
+            scenes,
+            robot,
+            detail.case,
+            {name: logged_posture(own) for name, own in detail.agents.items()},
+            detail.height_m,
+        )
+        for detail in holds
+    ]
 
-    scenes: Sequence[Scene]
-    robot: Tree
-    holds: Sequence[CaseDetail]
-    lifts: Sequence[tuple[tuple[str, str], LiftSolution]] = ()
-    alone: bool = False
 
-    def tests(self, conditions: PushConditions) -> dict[str, PushTest]:
-        """Of every moment, by its name.
+def pushed_design(result: DesignResult) -> PushedDesign:
+    """Where the robot of an evaluated design is pushed, all of whose cases are solved."""
+    plans, pushed = [], pushed_cases([solution.case for solution in result.cases])
+    for solution in result.cases:
+        case, scenes, robot = solution.case, result.scenes, result.tree
+        if case not in pushed:
+            continue
+        if isinstance(solution, MotionCase) and solution.motion and solution.motion.course:
+            plans.append(PushedPlan.lift(scenes, robot, case, solution.motion.course))
+        else:
+            plans.append(PushedPlan.hold(scenes, robot, case, solution.postures, case.task.heights[0]))
+    return PushedDesign(tuple(plans))
 
-        Raises:
-            InputError: there is none, or a scene without a robot on feet.
-        """
-        found: dict[str, PushTest] = {}
-        for name, scene, detail in self._holds():
-            postures = {agent: logged_posture(own) for agent, own in detail.agents.items()}
-            trees = self._trees(scene)
-            found[name] = (
-                alone_test(scene, trees, postures, conditions)
-                if self.alone
-                else hold_test(scene, trees, postures, detail.height_m, conditions)
-            )
-        for pair, solution in () if self.alone else self.lifts:
-            scene = self._scene(pair)
-            if solution.course is not None:
-                tests = lift_tests(scene, self._trees(scene), solution.course, conditions)
-                label = ", ".join([*(part for part in pair if part), f"{solution.lift}"])
-                found |= {f"{label}, after {time:.2g} s": test for time, test in tests.items()}
-        if not found:
-            raise InputError("push", "", "a hold or a lift that was found", "none")
-        return found
 
-    def mass(self) -> float:
-        """Of the robot [kg]."""
-        return float(self.robot.mass)
+def found_pushes(result: DesignResult, settings: PushSettings, names: Collection[str]) -> FoundPushes:
+    """What simulations say of an evaluated design, all of whose cases are solved.
 
-    def _holds(self) -> Iterator[tuple[str, Scene, CaseDetail]]:
-        for detail in self.holds:
-            yield detail.case.name, self._scene(detail.case.pair), detail
-
-    def _scene(self, pair: tuple[str, str]) -> Scene:
-        scene = scene_of(self.scenes, pair).undisturbed
-        if not scene.robots:
-            raise InputError("push", "", "a robot in the problem", "people alone")
-        wheeled = next((agent.name for agent in scene.agents if not agent.on_feet), None)
-        if wheeled is not None:
-            raise InputError("push", "", "agents on two feet", f"'{wheeled}', which stands on something else")
-        return scene
-
-    def _trees(self, scene: Scene) -> dict[str, Tree]:
-        return {each.name: self.robot if each.designed else each.tree for each in scene.agents}
+    Args:
+        result: of the design.
+        settings: of the problem.
+        names: of the quantities that are asked for.
+    """
+    conditions, together = PushConditions(settings.feedback), pushed_design(result)
+    margin = alone = None
+    outcomes: tuple[PushOutcome, ...] = ()
+    if MARGIN in names:
+        margin = least_margin(together.tests(conditions), ROBOT, together.mass)
+    if ALONE in names:
+        alone = least_margin(replace(together, alone=True).tests(conditions), ROBOT, together.mass)
+    if not {TRACKING, SATURATION, RECOVERY}.isdisjoint(names):
+        tests = together.tests(conditions).values()
+        outcomes = tuple(test.pushed(Push(settings.impulse, each)) for test in tests for each in DIRECTIONS)
+    return FoundPushes(margin, alone, outcomes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +117,7 @@ def found_margins(
         spread: whether the least margin is found again under each perturbation.
     """
     tests = pushed.tests(conditions)
-    found = FoundMargins(margins(tests, ROBOT, pushed.mass(), directions), {})
+    found = FoundMargins(margins(tests, ROBOT, pushed.mass, directions), {})
     return replace(found, spread=_spread(pushed, conditions, found.least)) if spread else found
 
 
@@ -130,7 +130,7 @@ def _spread(pushed: PushedDesign, conditions: PushConditions, least: Margin) -> 
     }
     push = Push(0.0, least.direction)
     return {
-        name: margin_in(pushed.tests(other)[least.moment], least.moment, push, pushed.mass()).impulse
+        name: margin_in(pushed.tests(other)[least.moment], least.moment, push, pushed.mass).impulse
         - least.impulse
         for name, other in others.items()
     }

@@ -10,6 +10,7 @@ from evodesign.mechanics.scene import Scene
 from evodesign.problem.file import ProblemFile
 from evodesign.quantities.push_quantities import SIMULATED, PushSettings
 from evodesign.records import ProblemSource
+from evodesign.simulation.pushable import refuse_unpushable
 
 
 def pushes_of(
@@ -23,16 +24,14 @@ def pushes_of(
         scenes: of the problem.
         asked: names of objectives and of constrained quantities.
     Raises:
-        InputError: a simulated quantity without `[push]`, or agents on anything but two feet.
+        InputError: a simulated quantity without `[push]`, or nobody whom controllers can keep upright.
     """
     name = next((each for each in asked if each in SIMULATED), None)
     if name is None:
         return None
     if tables.push is None:
         raise InputError(source.path, "push", f"a [push] for '{name}'", "none")
-    wheeled = next((agent.name for agent in scenes[0].agents if not agent.on_feet), None)
-    if wheeled is not None:
-        found = f"'{wheeled}', which stands on something else"
-        raise InputError(source.path, "push", f"agents on two feet for '{name}'", found)
+    for scene in scenes:
+        refuse_unpushable(scene, source.path, "push")
     feedback = Feedback(tables.push.frequency_rad_s, tables.push.damping_ratio)
     return PushSettings(tables.push.impulse_n_s, feedback)

@@ -17,7 +17,7 @@ from evodesign.posture.formulations.codesign import JointSettings
 from evodesign.posture.formulations.reach import Reach
 from evodesign.posture.results import AgentPosture, Array, CaseSolution
 from evodesign.quantities.demand import Demand
-from evodesign.quantities.push_quantities import DesignPushes
+from evodesign.quantities.push_quantities import FoundPushes
 from evodesign.quantities.stance_model import StanceModel
 from evodesign.records import Case
 from evodesign.tree.equip import actuators_of
@@ -40,7 +40,7 @@ class DesignResult:
         cases: one solution per undisturbed case of the problem, in its order.
         paper: the paper's tasks and their weights.
         demand: on sized actuators; None without any, and where no posture was found.
-        pushes: that are simulated; None where no quantity asks for them.
+        pushes: what simulations say; None before any, which take seconds and are for feasible designs alone.
     """
 
     scenes: tuple[Scene, ...]
@@ -54,7 +54,7 @@ class DesignResult:
     rated: tuple[float, ...] = ()
     standing: StanceModel | None = None
     demand: Demand | None = None
-    pushes: DesignPushes | None = None
+    pushes: FoundPushes | None = None
 
     @property
     def program_values(self) -> Sequence[float]:

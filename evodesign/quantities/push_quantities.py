@@ -12,21 +12,18 @@ seconds: they are run for designs alone that keep every other constraint.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
 from evodesign.control.gains import Feedback
 from evodesign.control.limits import WATCHED_SECONDS
-from evodesign.mechanics.agent import ROBOT
-from evodesign.motion.solution import MotionCase
 from evodesign.records import Constraint, Objective
-from evodesign.tasks import Hold
-from evodesign.tree.model import Tree
 
 if TYPE_CHECKING:
     from evodesign.quantities.design_result import DesignResult
-    from evodesign.simulation.push import PushOutcome, PushTest
+    from evodesign.simulation.push import PushOutcome
+    from evodesign.simulation.push_margin import Margin
 
 MARGIN, ALONE, TRACKING = "push_margin", "push_margin_alone", "load_tracking"
 SATURATION, RECOVERY = "torque_saturation", "recovery_seconds"
@@ -56,82 +53,29 @@ class PushSettings:
     feedback: Feedback
 
 
-class DesignPushes:
-    """Simulated pushes of one design; what was found of it is kept.
+@dataclass(frozen=True, slots=True)
+class FoundPushes:
+    """What simulations say of a design.
 
     Args:
-        settings: of the problem.
+        margin: the least of all moments and directions; None where nothing asks for it.
+        alone: likewise of the robot alone.
+        outcomes: of the problem's push in each direction at every moment; none where nothing asks for them.
     """
 
-    def __init__(self, settings: PushSettings) -> None:
-        self._settings = settings
-        self._tree: Tree | None = None
-        self._margins: dict[str, float | None] = {}
-        self._outcomes: list[PushOutcome] = []
-
-    def margin(self, result: DesignResult, *, alone: bool = False) -> float | None:
-        """The least impulse [N s] of all moments and directions; None where a case is not solved."""
-        self._of(result)
-        name = ALONE if alone else MARGIN
-        if name not in self._margins:
-            from evodesign.simulation.push_margin import least_margin
-
-            tests = self._tests(result, alone=alone)
-            found = least_margin(tests, ROBOT, float(result.tree.mass))
-            self._margins[name] = None if found is None else found.impulse
-        return self._margins[name]
-
-    def outcomes(self, result: DesignResult) -> list[PushOutcome]:
-        """What the problem's push does in each direction at every moment."""
-        self._of(result)
-        if not self._outcomes:
-            from evodesign.simulation.push import Push
-            from evodesign.simulation.push_margin import DIRECTIONS
-
-            self._outcomes = [
-                test.pushed(Push(self._settings.impulse, direction))
-                for test in self._tests(result).values()
-                for direction in DIRECTIONS
-            ]
-        return self._outcomes
-
-    def _of(self, result: DesignResult) -> None:
-        """Forget another design."""
-        if self._tree is not result.tree:
-            self._tree, self._margins, self._outcomes = result.tree, {}, []
-
-    def _tests(self, result: DesignResult, *, alone: bool = False) -> Mapping[str, PushTest]:
-        from evodesign.simulation.pushed_plan import PushConditions, alone_test, hold_test, lift_tests
-
-        conditions = PushConditions(self._settings.feedback)
-        found: dict[str, PushTest] = {}
-        for case in result.cases if all(each.solved for each in result.cases) else ():
-            scene, task = result.scene_of(case.case).undisturbed, case.case.task
-            trees = {each.name: result.tree if each.designed else each.tree for each in scene.agents}
-            heights = [each.case.task.heights[0] for each in result.cases if each.case.pair == case.case.pair]
-            if isinstance(task, Hold) and task.height_m in (min(heights), max(heights)):
-                found[case.case.name] = (
-                    alone_test(scene, trees, case.postures, conditions)
-                    if alone
-                    else hold_test(scene, trees, case.postures, task.height_m, conditions)
-                )
-            elif isinstance(case, MotionCase) and case.motion is not None and case.motion.course is not None:
-                if alone:
-                    found[case.case.name] = alone_test(scene, trees, case.instants[0].postures, conditions)
-                    continue
-                tests = lift_tests(scene, trees, case.motion.course, conditions)
-                found |= {f"{case.case.name} after {time:.3g} s": test for time, test in tests.items()}
-        return found
+    margin: Margin | None = None
+    alone: Margin | None = None
+    outcomes: tuple[PushOutcome, ...] = ()
 
 
 def push_margin(result: DesignResult) -> float | None:
-    """The largest push that robot, people and load survive [N s]; None without `[push]` or a hold or lift."""
-    return None if result.pushes is None else result.pushes.margin(result)
+    """The largest push that robot, people and load survive [N s]; None where none was simulated."""
+    return None if result.pushes is None or result.pushes.margin is None else result.pushes.margin.impulse
 
 
 def push_margin_alone(result: DesignResult) -> float | None:
     """The largest push that the robot survives without load and people [N s], likewise."""
-    return None if result.pushes is None else result.pushes.margin(result, alone=True)
+    return None if result.pushes is None or result.pushes.alone is None else result.pushes.alone.impulse
 
 
 def load_tracking(result: DesignResult) -> float | None:
@@ -150,5 +94,5 @@ def recovery_seconds(result: DesignResult) -> float | None:
     return max((WATCHED_SECONDS if time is None else time for time in times), default=None)
 
 
-def _outcomes(result: DesignResult) -> list[PushOutcome]:
-    return [] if result.pushes is None else result.pushes.outcomes(result)
+def _outcomes(result: DesignResult) -> tuple[PushOutcome, ...]:
+    return () if result.pushes is None else result.pushes.outcomes

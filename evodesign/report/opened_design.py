@@ -21,8 +21,10 @@ if TYPE_CHECKING:
     from evodesign.evaluation.evaluate import Evaluator
     from evodesign.evaluation.progress import PrecomputeProgress
     from evodesign.mechanics.agent import Agent
+    from evodesign.motion.solution import LiftSolution
     from evodesign.problem.build import DesignProblem
     from evodesign.quantities.ergonomics import Ergonomics
+    from evodesign.tasks import Lift
 
 
 class RebuiltProblem:
@@ -90,6 +92,18 @@ class OpenedDesign:
         space = problem.space
         values = space.given([design[each.name] for each in space.parameters], assessment.rated_torques)
         return SceneSet.of(problem.scenes, problem.space.resized(problem.scene.designed_tree, values))
+
+    def lifts(
+        self, asked: Lift, jobs: int, progress: PrecomputeProgress
+    ) -> dict[tuple[str, str], LiftSolution]:
+        """A lift with every person and load, solved anew, by their names."""
+        from evodesign.evaluation.factory import evaluator_of
+        from evodesign.evaluation.lifts import Lifts
+
+        problem, values = self.rebuilt.problem, self.evaluation.assessment.design
+        evaluator = evaluator_of(problem, jobs, progress, [asked])
+        given = [values[each.name] for each in problem.space.parameters]
+        return Lifts(evaluator, evaluator.known).solve(given, asked)
 
     def spread(self) -> PeopleSpread | None:
         """Of the run's designs over samples of people; None where this one has none."""

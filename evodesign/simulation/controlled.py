@@ -110,7 +110,7 @@ class ControlledScene:
     ) -> None:
         known = scene if planned is None else planned
         self._substep = timing.step / timing.substeps
-        self.engine = engine(scene, trees, postures, height, self._substep, feedback.rate)
+        self.engine = engine(scene, trees, postures, height, self._substep, feedback)
         self.timing, self._targets, self.number = timing, targets, 0
         self.controllers: dict[str, WholeBodyController] = {}
         for agent in known.agents:

@@ -20,6 +20,7 @@ from pydrake.multibody.plant import ExternallyAppliedSpatialForce
 from pydrake.multibody.tree import JacobianWrtVariable
 
 from evodesign.body.placement import matrix_from_wxyz
+from evodesign.control.gains import Feedback
 from evodesign.control.limits import torque_limit
 from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.floating_base import ROOT
@@ -88,7 +89,7 @@ class DrakeEngine:
         postures: Mapping[str, AgentPosture],
         height: float,
         step: float,
-        rate: float,
+        feedback: Feedback,
     ) -> None:
         placed = {a.name: placed_links(a, trees[a.name], postures[a.name]) for a in scene.agents}
         made = drake_scene(scene, trees, placed, step)
@@ -112,7 +113,7 @@ class DrakeEngine:
         at_hand = scene.payload.mass / max(sum(len(agent.hands) for agent in scene.agents), 1)
         for agent in scene.agents:
             parts = self._agents[agent.name]
-            damping = self.damping[agent.name] = rate * self._inertias(agent, parts, at_hand)
+            damping = self.damping[agent.name] = feedback.rate * self._inertias(agent, parts, at_hand)
             for joint, each in zip(parts.joints, damping, strict=True):
                 joint.SetDamping(self._context, each)
             self._drag[parts.rates], self._limits[parts.rates] = damping, parts.limits

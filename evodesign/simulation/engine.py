@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from evodesign.body.placement import Placement
+from evodesign.control.gains import Feedback
 from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture, Array
@@ -99,9 +100,11 @@ class Engine(Protocol):
         ...
 
 
-EngineMaker = Callable[[Scene, Mapping[str, Tree], Mapping[str, AgentPosture], float, float, float], Engine]
-"""From scene, trees by agent name, postures by agent name, height of the load's centre [m], step [s] and the
-rate 2 z w of the damping [1/s] to the scene at rest in these postures."""
+EngineMaker = Callable[
+    [Scene, Mapping[str, Tree], Mapping[str, AgentPosture], float, float, Feedback], Engine
+]
+"""From scene, trees by agent name, postures by agent name, height of the load's centre [m], step [s] and
+the feedback that sets the damping to the scene at rest in these postures."""
 
 
 def engine_named(name: EngineName) -> EngineMaker:

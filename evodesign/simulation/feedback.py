@@ -66,13 +66,23 @@ def _all_but_what_is_beyond(found: SimulatedScene, parts: AgentParts, joint: int
     return velocity
 
 
+def set_damping(found: SimulatedScene, parts: AgentParts, inertias: Array, feedback: Feedback) -> None:
+    """Give an agent's actuators the damping of a feedback, taken at the end of a step.
+
+        (M + h d) (v' - v) / h = f + u - d v        is        M (v' - v) / h = f + u - d v'
+
+    with h d in each joint's inertia, which is of no body.
+
+    Source: Tan, Liu and Turk 2011, Stable proportional-derivative controllers.
+    """
+    model, damping = found.model, feedback.rate * inertias
+    model.actuator_biasprm[parts.actuators, 2] = -damping
+    model.dof_armature[parts.rates] += model.opt.timestep * damping
+
+
 def set_gains(found: SimulatedScene, feedback: Feedback) -> None:
     """Give the model's actuators the gains of a feedback, from the inertias in its present posture."""
     for parts in found.agents.values():
         inertias = joint_inertias(found, parts)
-        stiffness = feedback.frequency**2 * inertias
-        damping = 2.0 * feedback.damping * feedback.frequency * inertias
-        found.model.actuator_biasprm[parts.actuators, 1] = -stiffness
-        found.model.actuator_biasprm[parts.actuators, 2] = -damping
-        # of no body: it makes the step implicit in the damping (`rollout`)
-        found.model.dof_armature[parts.rates] += found.model.opt.timestep * damping
+        found.model.actuator_biasprm[parts.actuators, 1] = -(feedback.frequency**2) * inertias
+        set_damping(found, parts, inertias, feedback)

@@ -1,9 +1,4 @@
-"""MuJoCo as the engine of a controlled simulation.
-
-Damping is taken at the end of a step by h d in the joints' inertia (`rollout`).
-
-Source: Tan, Liu and Turk 2011 (damping at the end of a step).
-"""
+"""MuJoCo as the engine of a controlled simulation, with damping at the end of a step (`set_damping`)."""
 
 from __future__ import annotations
 
@@ -12,10 +7,11 @@ from collections.abc import Mapping
 import mujoco
 import numpy as np
 
+from evodesign.control.gains import Feedback
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture, Array
 from evodesign.simulation.engine import EngineState
-from evodesign.simulation.feedback import joint_inertias
+from evodesign.simulation.feedback import joint_inertias, set_damping
 from evodesign.simulation.model import simulated_scene
 from evodesign.tree.model import Tree
 
@@ -35,16 +31,15 @@ class MujocoEngine:
         postures: Mapping[str, AgentPosture],
         height: float,
         step: float,
-        rate: float,
+        feedback: Feedback,
     ) -> None:
         self.found = simulated_scene(scene, trees, postures, height, step)
         model, agents = self.found.model, self.found.agents
         self._rise = np.zeros(model.nu)
         self.damping: dict[str, Array] = {}
         for name, parts in agents.items():
-            damping = self.damping[name] = rate * joint_inertias(self.found, parts)
-            model.dof_armature[parts.rates] += step * damping
-            model.actuator_biasprm[parts.actuators, 2] = -damping
+            set_damping(self.found, parts, joint_inertias(self.found, parts), feedback)
+            self.damping[name] = -model.actuator_biasprm[parts.actuators, 2]
         mujoco.mj_forward(model, self.found.data)
 
     @property

@@ -1,14 +1,8 @@
 """A simulation in time: torques of the plan, joint feedback, and Newton's laws.
 
-A step of MuJoCo's explicit integration with h d added to each joint's inertia (`feedback`) is one in which
-damping is taken at the end of the step,
-
-    M (v' - v) / h = f + u - k q - d v'    is    (M + h d) (v' - v) / h = f + u - k q - d v
-
-with forces of contacts and grasps found for the same sum, so that stiff feedback does not shake the feet. The
-torque of a step is u - k q - d v', as it acts.
-
-Source: Tan, Liu and Turk 2011, Stable proportional-derivative controllers.
+Damping is taken at the end of a step (`feedback.set_damping`), with forces of contacts and grasps found for
+the same sum, so that stiff feedback does not shake the feet. The torque of a step is u - k q - d v', as it
+acts.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ from evodesign.simulation.controlled import Timing
 from evodesign.simulation.engine import EngineMaker
 from evodesign.simulation.mujoco_engine import MujocoEngine
 from evodesign.simulation.push import Push, PushOutcome, PushTest
-from evodesign.simulation.pushed_plan import PushConditions, alone_test
+from evodesign.simulation.pushed_plan import PushConditions, PushedPlan
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 
 SMALL = ((1e-4, 0.0, 0.0), (0.0, 1e-4, 0.0), (0.0, 0.0, 1e-4))
@@ -51,7 +51,8 @@ class Pendulum:
             np.array([0.0, 0.0, HEIGHT]), np.zeros(3), {"ankle": 0.0}, {"ankle": 0.0}, {"foot": weight}
         )
         conditions = PushConditions(timing=timing or Timing(2e-3, 4), engine=engine)
-        return alone_test(scene, {"robot": scene.robot.tree}, {"robot": upright}, conditions)
+        plan = PushedPlan("upright", scene, {"robot": scene.robot.tree}, {"robot": upright}, 0.0)
+        return plan.tests(conditions, alone=True)["upright"]
 
     def survived(self) -> float:
         """The largest impulse that a controller without delay survives [N s].

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from evodesign.control.gains import Feedback
+from evodesign.errors import InputError
+from evodesign.records import Case
 from evodesign.simulation.controlled import Timing
 from evodesign.simulation.engine import engine_named
 from evodesign.simulation.installed import EngineName
 from evodesign.simulation.push import Push, PushOutcome, PushTest
 from evodesign.simulation.push_margin import least_margin, margin_in, margins
-from evodesign.simulation.pushed_plan import PushConditions, alone_test, hold_test
+from evodesign.simulation.pushable import refuse_unpushable
+from evodesign.simulation.pushed_plan import PushConditions, PushedDesign, PushedPlan, pushed_cases
+from evodesign.tasks import Hold, Lift
 from tests.control.pendulum import Pendulum
 from tests.simulation.conftest import HEIGHT, Held
 from tests.simulation.engines import ENGINES
@@ -28,11 +33,11 @@ def test_a_pendulum_survives_until_its_capture_point_leaves_the_sole(
 ) -> None:
     """The largest impulse is the closed form's within 5 %, so it grows with sole and torque as that does."""
     tests, impulse = pendulum.test(engine=engine_named(engine)), pendulum.survived()
-    pushed = [tests.pushed(Push(share * impulse, 0.0, seconds=0.02)) for share in (0.95, 1.05)]
-    assert [each.survived for each in pushed] == [True, False]
-    assert pushed[1].reason == "robot falls"
-    assert pushed[0].recovery is not None
-    assert 0.0 < pushed[0].recovery < pushed[0].seconds
+    pushes = [tests.pushed(Push(share * impulse, 0.0, seconds=0.02)) for share in (0.95, 1.05)]
+    assert [each.survived for each in pushes] == [True, False]
+    assert pushes[1].reason == "robot falls"
+    assert pushes[0].recovery is not None
+    assert 0.0 < pushes[0].recovery < pushes[0].seconds
 
 
 class Straight(PushTest):
@@ -79,15 +84,20 @@ def test_a_margin_beyond_a_smaller_push_that_is_lost_does_not_count() -> None:
     assert 0.97 * 8.0 < found.impulse < 8.0
 
 
+def pushed(held: Held, conditions: PushConditions | None = None, *, alone: bool = False) -> PushTest:
+    plan = PushedPlan("hold", held.scene, held.trees, held.solution.postures, HEIGHT)
+    return PushedDesign((plan,), alone).tests(conditions or PushConditions())["hold"]
+
+
 @pytest.fixture(scope="module")
 def pushed_hold(held: Held) -> PushTest:
-    return hold_test(held.scene, held.trees, held.solution.postures, HEIGHT, PushConditions())
+    return pushed(held)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_push_is_survived_or_not_and_told_alike_each_time(held: Held, engine: EngineName) -> None:
     conditions = PushConditions(engine=engine_named(engine))
-    pushed_hold = hold_test(held.scene, held.trees, held.solution.postures, HEIGHT, conditions)
+    pushed_hold = pushed(held, conditions)
     weak, strong, again = (pushed_hold.pushed(Push(each, 0.0)) for each in (8.0, 80.0, 8.0))
     assert weak.survived
     assert weak.recovery is not None
@@ -101,19 +111,40 @@ def test_a_push_is_survived_or_not_and_told_alike_each_time(held: Held, engine: 
 def test_late_sensors_and_another_load_change_what_a_push_does(held: Held, pushed_hold: PushTest) -> None:
     known = pushed_hold.pushed(Push(8.0, math.pi))
     for conditions in (PushConditions(timing=Timing(delay=1)), PushConditions(mass=1.05)):
-        changed = hold_test(held.scene, held.trees, held.solution.postures, HEIGHT, conditions)
+        changed = pushed(held, conditions)
         assert changed.pushed(Push(8.0, math.pi)).capture != known.capture
 
 
 def test_a_robot_alone_stands_above_its_soles_and_is_pushed(held: Held) -> None:
-    alone = alone_test(held.scene, held.trees, held.solution.postures, PushConditions())
-    outcome = alone.pushed(Push(5.0, 0.0))
+    outcome = pushed(held, alone=True).pushed(Push(5.0, 0.0))
     assert outcome.survived
     assert outcome.load_off == 0.0
 
 
 def test_a_controller_too_slow_to_stand_says_who_falls(held: Held) -> None:
     slow = PushConditions(Feedback(0.05, 0.05))
-    outcome = hold_test(held.scene, held.trees, held.solution.postures, HEIGHT, slow).pushed(Push(20.0, 0.0))
+    outcome = pushed(held, slow).pushed(Push(20.0, 0.0))
     assert not outcome.survived
     assert outcome.reason
+
+
+def test_the_lowest_and_highest_hold_of_every_person_and_load_and_all_lifts_are_pushed() -> None:
+    lift = Case(task=Lift(from_m=0.5, to_m=1.5))
+    holds = {
+        person: [Case(person=person, task=Hold(height_m=height)) for height in (1.1, 0.8, 1.4)]
+        for person in ("short", "tall")
+    }
+    kept = pushed_cases([*holds["short"], lift, *holds["tall"][:1]])
+    assert kept == (*holds["short"][1:], lift, holds["tall"][0])
+
+
+def test_where_nothing_is_found_or_nobody_stands_on_feet_nobody_is_pushed(held: Held) -> None:
+    with pytest.raises(InputError, match="a hold or a lift that was found"):
+        PushedDesign(())
+    human = replace(held.scene.human, contacts=held.scene.human.hands)
+    for scene, found in (
+        (held.scene.with_agents(human), "'human', which stands on something else"),
+        (held.scene.only(human), "people alone"),
+    ):
+        with pytest.raises(InputError, match=found):
+            refuse_unpushable(scene)

@@ -14,7 +14,7 @@ from evodesign.evaluation.evaluate import Evaluator
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.shipped import SHIPPED
 from evodesign.problem.source import source_of
-from evodesign.quantities.push_quantities import SIMULATED, DesignPushes
+from evodesign.quantities.push_quantities import SIMULATED
 from evodesign.simulation.push_margin import FASTEST
 
 PUSH = {"impulse_n_s": 6.0}
@@ -39,7 +39,8 @@ def test_a_feasible_design_is_pushed_and_one_that_breaks_a_bound_is_not(
     evaluator: Evaluator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("evodesign.simulation.push_margin.RESOLUTION", 0.5)
-    monkeypatch.setattr("evodesign.simulation.push_margin.DIRECTIONS", (0.0,))
+    for module in ("simulation.push_margin", "evaluation.pushes"):
+        monkeypatch.setattr(f"evodesign.{module}.DIRECTIONS", (0.0,))
     problem = evaluator.problem
     design = problem.space.unscaled(problem.scene.robot.tree)
     result = evaluator.solve(design)
@@ -51,8 +52,8 @@ def test_a_feasible_design_is_pushed_and_one_that_breaks_a_bound_is_not(
     assert 0.0 < found.constraints["recovery_seconds"] < 2.9
     heavy = tuple(replace_bound(each, mass - 1.0) for each in problem.constraints)
     monkeypatch.setattr(evaluator, "problem", replace(problem, constraints=heavy))
-    monkeypatch.setattr(DesignPushes, "_tests", lambda *_, **__: pytest.fail("simulated"))
-    missed = evaluator.assessment(design, replace(result, pushes=DesignPushes(problem.pushes)))
+    monkeypatch.setattr("evodesign.evaluation.pushes.found_pushes", lambda *_: pytest.fail("simulated"))
+    missed = evaluator.assessment(design, result)
     assert missed.violation == pytest.approx(1.0 / (mass - 1.0))
     assert set(missed.objectives) == {"robot_torque"}
     assert set(missed.constraints) == {"mass"}

@@ -27,7 +27,7 @@ from tests.control.pendulum import Pendulum
 from tests.simulation.conftest import HEIGHT, Held
 from tests.simulation.engines import ENGINES
 
-STEP, RATE = 5e-4, 16.0
+STEP = 5e-4
 LIMIT = 9.0
 
 
@@ -56,7 +56,7 @@ def above_ground(held: Held) -> tuple[Agent, Tree, AgentPosture]:
 def flying(held: Held, name: EngineName) -> Engine:
     robot, tree, posture = above_ground(held)
     scene = held.scene.only(robot)
-    return engine_named(name)(scene, {"robot": tree}, {"robot": posture}, HEIGHT, STEP, RATE)
+    return engine_named(name)(scene, {"robot": tree}, {"robot": posture}, HEIGHT, STEP, Feedback())
 
 
 @pytest.mark.parametrize("name", ENGINES)
@@ -108,7 +108,7 @@ def test_in_the_air_the_engines_move_alike(held: Held) -> None:
 def test_dampings_follow_from_the_same_inertias(held_with: object, grasp: Grasp) -> None:
     held: Held = held_with(grasp)  # type: ignore[operator]
     made = [
-        engine_named(name)(held.scene, held.trees, held.solution.postures, HEIGHT, STEP, RATE).damping
+        engine_named(name)(held.scene, held.trees, held.solution.postures, HEIGHT, STEP, Feedback()).damping
         for name in EngineName
     ]
     for agent in held.scene.agents:
@@ -174,5 +174,5 @@ def test_a_body_that_cannot_be_is_refused_with_drakes_reason(held: Held) -> None
     impossible = tree.reshaped(links, tree.joints)
     with pytest.raises(ModelError, match="bodies that Drake can move"):
         engine_named(EngineName.DRAKE)(
-            held.scene.only(robot), {"robot": impossible}, {"robot": posture}, HEIGHT, STEP, RATE
+            held.scene.only(robot), {"robot": impossible}, {"robot": posture}, HEIGHT, STEP, Feedback()
         )
