@@ -29,6 +29,7 @@ from tests.simulation.engines import ENGINES
 
 STEP = 5e-4
 LIMIT = 9.0
+PUSHED = np.array([30.0, -20.0, 0.0])
 
 
 def above_ground(held: Held) -> tuple[Agent, Tree, AgentPosture]:
@@ -64,7 +65,7 @@ def test_what_nobody_holds_falls_as_a_stone_does_and_a_push_moves_its_centre_of_
     held: Held, name: EngineName
 ) -> None:
     """With the speed of the end of each step: z = z0 - g h^2 n (n + 1) / 2."""
-    engine, count, force = flying(held, name), 100, np.array([30.0, -20.0, 0.0])
+    engine, count = flying(held, name), 100
     robot, tree, _ = above_ground(held)
     body = MovingBody(robot, tree)
 
@@ -73,16 +74,16 @@ def test_what_nobody_holds_falls_as_a_stone_does_and_a_push_moves_its_centre_of_
         return body.at(body.coordinates(now.root, now.positions), np.zeros(body.size)).center.place
 
     before, fallen = center(), STEP**2 * count * (count + 1) / 2.0
-    engine.push("robot", robot.pushed_frame, force)
+    engine.push("robot", robot.pushed_frame, PUSHED)
     engine.advance(count)
     assert engine.load == pytest.approx([0.0, 0.0, HEIGHT - GRAVITY * fallen], abs=1e-9)
-    moved = fallen * (force / body.total - [0.0, 0.0, GRAVITY])
+    moved = fallen * (PUSHED / body.total - [0.0, 0.0, GRAVITY])
     assert center() - before == pytest.approx(moved, abs=1e-5)
 
 
 @pytest.mark.needs_drake
 def test_in_the_air_the_engines_move_alike(held: Held) -> None:
-    """Masses, inertias, rotors, damping at a step's end, and limits of torque; contacts play no part.
+    """Masses, inertias, rotors, damping at a step's end, limits of torque, pushes; contacts play no part.
 
     The first step, from rest, is the same to rounding; the next ones but for how orientations are integrated.
     """
@@ -92,6 +93,7 @@ def test_in_the_air_the_engines_move_alike(held: Held) -> None:
         size = len(engine.state("robot").rates)
         inputs = np.random.default_rng(0).normal(0.0, 10.0, size)
         engine.drive("robot", inputs, np.full(size, 0.01))
+        engine.push("robot", held.scene.robot.pushed_frame, PUSHED)
         for count, found in ends.items():
             engine.restore(started := engine.moment())
             engine.advance(count)
