@@ -1,7 +1,7 @@
 """A push on somebody's trunk, and what comes of it: who falls, where the load goes, which limits break.
 
 A push is a horizontal force on the trunk's centre of mass. A simulation ends when somebody
-falls, the load is too far off, a limit is broken for too long, or all have recovered.
+falls, the load is too far off, a limit is broken for too long, or all have recovered and a lift is over.
 """
 
 from __future__ import annotations
@@ -117,14 +117,15 @@ class PushTest:
         watched = _PushRecord(scene, push.agent)
         states, forces, every = [], [], max(1, round(FRAME / scene.timing.step))
         lasting = round(push.seconds / scene.timing.step)
-        for number in range(round(WATCHED_SECONDS / scene.timing.step)):
+        ending = max(lasting, 0 if self._path is None else len(self._path) - 1 - scene.number)
+        for number in range(max(ending, round(WATCHED_SECONDS / scene.timing.step))):
             now = force if number < lasting else np.zeros(3)
             scene.push(push.agent, agent.pushed_frame, now)
             if frames and number % every == 0:
                 states.append(np.array(scene.found.data.qpos))
                 forces.append(now)
             watched.saw(scene.advance(), self.load_off())
-            if watched.reason or (number >= lasting and watched.is_back):
+            if watched.reason or (number >= ending and watched.is_back):
                 break
         return PushOutcome(
             push=push,
