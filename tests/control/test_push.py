@@ -65,19 +65,6 @@ def test_bisection_finds_the_limit_in_each_direction_and_the_least_with_fewer_tr
     assert margin_in(least, "hold", Push(0.0, 0.0), 30.0, most=2.0).impulse == 2.0
 
 
-class Alternating(Straight):
-    """Survives 8.9 to 10 N s by chance, though 8 N s are lost."""
-
-    def pushed(self, push: Push, frames: bool = False) -> PushOutcome:
-        survived = push.impulse < 8.0 or 8.9 < push.impulse < 10.0
-        return PushOutcome(push, "" if survived else "robot falls", 1.0, None, 0.0, 0.0, 0.0)
-
-
-def test_a_margin_beyond_a_smaller_push_that_is_lost_does_not_count() -> None:
-    found = margin_in(Alternating(), "hold", Push(0.0, 0.0), 30.0)
-    assert 0.97 * 8.0 < found.impulse < 8.0
-
-
 def pushed(held: Held, conditions: PushConditions | None = None, *, alone: bool = False) -> PushTest:
     plan = PushedPlan("hold", held.scene, held.trees, held.solution.postures, HEIGHT)
     return PushedDesign((plan,), alone).tests(conditions or PushConditions())["hold"]
