@@ -48,6 +48,9 @@ def test_a_feasible_design_is_pushed_and_one_that_breaks_a_bound_is_not(
     mass = float(result.tree.mass)
     assert found.violation == 0.0
     assert PUSH["impulse_n_s"] / 2.0 < found.objectives["push_margin"] <= FASTEST * mass
+    weakest = found.weakest_pushes["push_margin"]
+    assert (weakest.moment, weakest.direction_deg) == ("1 m", 0.0)
+    assert weakest.reason
     assert 0.0 < found.objectives["load_tracking"] < 0.1
     assert 0.0 < found.constraints["recovery_seconds"] < 2.9
     heavy = tuple(replace_bound(each, mass - 1.0) for each in problem.constraints)
