@@ -97,10 +97,14 @@ class PushTest:
         scene: with its controllers.
         path: height of the load's centre at each answer [m], the last one from then on; None without a load.
         moment: of the pushes.
+        is_symmetric: whether everything is its own mirror image, so that a push to the left does what one to
+            the right does.
     """
 
-    def __init__(self, scene: ControlledScene, path: Array | None, moment: Snapshot) -> None:
-        self.scene, self._path, self._moment = scene, path, moment
+    def __init__(
+        self, scene: ControlledScene, path: Array | None, moment: Snapshot, *, is_symmetric: bool
+    ) -> None:
+        self.scene, self._path, self._moment, self.is_symmetric = scene, path, moment, is_symmetric
 
     def pushed(self, push: Push, frames: bool = False) -> PushOutcome:
         """What comes of a push.

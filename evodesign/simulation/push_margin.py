@@ -1,7 +1,8 @@
 """The largest push that is survived, in each of eight directions or in the weakest of them.
 
 Bisection between an impulse that is survived and one that is not. For the weakest direction alone every other
-one is only tried at the least margin so far, and bisected where it fails there.
+one is only tried at the least margin so far, and bisected where it fails there. Where everything is its own
+mirror image, one of each two mirrored directions is pushed.
 """
 
 from __future__ import annotations
@@ -80,15 +81,27 @@ def margin_in(
     return Margin(moment, push.direction, low, reason, trials)
 
 
+def different_directions(test: PushTest, directions: Sequence[float] = ()) -> dict[float, float]:
+    """Of each direction, or of all, the one whose push does the same: itself or its mirror image."""
+    kept: dict[float, float] = {}
+    for direction in directions or DIRECTIONS:
+        mirrored = (each for each in kept.values() if math.isclose(each + direction, math.tau))
+        kept[direction] = next(mirrored, direction) if test.is_symmetric else direction
+    return kept
+
+
 def margins(
     tests: Mapping[str, PushTest], agent: str, mass: float, directions: Sequence[float] = ()
 ) -> tuple[Margin, ...]:
     """The margin in every direction at every moment; arguments as `margin_in`."""
-    return tuple(
-        margin_in(test, name, Push(0.0, direction, agent), mass)
-        for name, test in tests.items()
-        for direction in directions or DIRECTIONS
-    )
+    found = []
+    for name, test in tests.items():
+        same = different_directions(test, directions)
+        own = {
+            each: margin_in(test, name, Push(0.0, each, agent), mass) for each in dict.fromkeys(same.values())
+        }
+        found += [replace(own[like], direction=direction) for direction, like in same.items()]
+    return tuple(found)
 
 
 def least_margin(
@@ -97,7 +110,7 @@ def least_margin(
     """The smallest of them, without finding the others; None without moments."""
     least, trials = None, 0
     for name, test in tests.items():
-        for direction in directions or DIRECTIONS:
+        for direction in dict.fromkeys(different_directions(test, directions).values()):
             most = math.inf if least is None else least.impulse
             found = margin_in(test, name, Push(0.0, direction, agent), mass, most)
             trials += found.trials

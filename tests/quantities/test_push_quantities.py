@@ -39,8 +39,7 @@ def test_a_feasible_design_is_pushed_and_one_that_breaks_a_bound_is_not(
     evaluator: Evaluator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("evodesign.simulation.push_margin.RESOLUTION", 0.5)
-    for module in ("simulation.push_margin", "evaluation.pushes"):
-        monkeypatch.setattr(f"evodesign.{module}.DIRECTIONS", (0.0,))
+    monkeypatch.setattr("evodesign.simulation.push_margin.DIRECTIONS", (0.0,))
     problem = evaluator.problem
     design = problem.space.unscaled(problem.scene.robot.tree)
     result = evaluator.solve(design)
