@@ -20,7 +20,10 @@ flat on the floor. Within these, least squares of what is wanted, in the masses 
               wrench F = F_plan - m/n (what the feedback adds), which is an impedance of the load
     trunk     its turn, likewise
     posture   joints, likewise
-    wrenches  of the feet, as planned
+    wrenches  of the feet, as planned; internal ones, with which feet work against each other and which move
+              nothing, count as much as balance: a controller that is at its limits would else turn feet
+              against each other to their limits of friction for the least gain, and change its mind in
+              every answer
 
 The order is that of importance: what stands lower counts by `LEVEL` less, but hands count as much as balance.
 One bandwidth w and one damping z set all gains.
@@ -207,9 +210,10 @@ class WholeBodyController:
             (target.coordinates - q)[places], (target.velocity - body.velocity)[rates]
         )
         wanted.append(scale * (target.acceleration[rates] + posture))
-        scale = LEVEL**1.5 * np.tile(np.repeat([mass**0.5, mass / body.spin**0.5], 3), len(body.feet))
-        rows[range(size + len(rates), len(rows)), range(count, count + self._wrenches)] = scale
-        wanted.append(scale * target.feet_wrenches.ravel() / mass)
+        scale = np.tile(np.repeat([mass**0.5, mass / body.spin**0.5], 3), len(body.feet))
+        wrenches = wrench_weights(body, scale) * scale
+        rows[size + len(rates) :, count:] = wrenches
+        wanted.append(wrenches @ target.feet_wrenches.ravel() / mass)
         return rows, np.concatenate(wanted)
 
     def _tasks(self, body: BodyMotion, target: Target, added: list[Array]) -> Iterator[tuple[Array, Array]]:
@@ -240,6 +244,20 @@ class WholeBodyController:
         lower = np.concatenate([self._least, -torque - bias, least[self._bounded]])
         upper = np.concatenate([np.full(len(self._least), np.inf), torque - bias, most[self._bounded]])
         return lower, upper
+
+
+def wrench_weights(body: BodyMotion, scale: Array) -> Array:
+    """Weights of the feet's wrenches: one of internal ones, which move nothing, and little of the others.
+
+    Args:
+        body: on its feet.
+        scale: of each number of the wrenches, shape (w,).
+    Returns:
+        A symmetric matrix, shape (w, w).
+    """
+    moving = np.hstack([foot.jacobian[:, :ROOT].T for foot in body.feet]) / scale
+    share = moving.T @ np.linalg.solve(moving @ moving.T, moving)
+    return np.asarray(np.eye(len(scale)) - (1.0 - LEVEL**1.5) * share)
 
 
 def _pendulum(body: BodyMotion) -> float:

@@ -28,7 +28,7 @@ from evodesign.posture.results import AgentPosture, Array, CaseSolution, Instant
 from evodesign.problem.build import DesignProblem
 from evodesign.quantities.design_result import DesignResult
 from evodesign.quantities.objectives import objective_values
-from evodesign.quantities.push_quantities import unsimulated
+from evodesign.quantities.push_quantities import ALONE, MARGIN, unsimulated
 from evodesign.records import (
     ActiveLimit,
     AgentDetail,
@@ -43,6 +43,7 @@ from evodesign.records import (
     ProblemSource,
     ReachOutcome,
     Status,
+    WeakestPush,
     worst_status,
 )
 from evodesign.searches.surrogate.threads import one_thread
@@ -163,6 +164,7 @@ class Evaluator:
             cases=cases,
             constraints=constrained or msgspec.UNSET,
             rated=rated_of(result) or msgspec.UNSET,
+            weakest=weakest_of(result) or msgspec.UNSET,
         )
 
 
@@ -178,6 +180,17 @@ def rated_of(result: DesignResult) -> dict[str, float]:
     """The rated torques [N m] of sized actuators, by the parameter that is their margin."""
     space = result.space
     return {space.parameters[place].name: result.rated[place] for place in space.margins}
+
+
+def weakest_of(result: DesignResult) -> dict[str, WeakestPush]:
+    """Where each push margin is least, by its name."""
+    pushes = result.pushes
+    found = {} if pushes is None else {MARGIN: pushes.margin, ALONE: pushes.alone}
+    return {
+        name: WeakestPush(margin.moment, math.degrees(margin.direction), margin.reason)
+        for name, margin in found.items()
+        if margin is not None
+    }
 
 
 def reach_of(reach: Reach) -> ReachOutcome:

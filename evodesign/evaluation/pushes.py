@@ -24,7 +24,7 @@ from evodesign.quantities.push_quantities import (
 )
 from evodesign.records import CaseDetail
 from evodesign.simulation.push import Push, PushOutcome
-from evodesign.simulation.push_margin import DIRECTIONS, Margin, least_margin, margin_in, margins
+from evodesign.simulation.push_margin import Margin, different_directions, least_margin, margin_in, margins
 from evodesign.simulation.pushed_plan import PushConditions, PushedDesign, PushedPlan, pushed_cases
 from evodesign.tree.model import Tree
 
@@ -82,8 +82,11 @@ def found_pushes(result: DesignResult, settings: PushSettings, names: Collection
     if ALONE in names:
         alone = least_margin(replace(together, alone=True).tests(conditions), ROBOT, together.mass)
     if not {TRACKING, SATURATION, RECOVERY}.isdisjoint(names):
-        tests = together.tests(conditions).values()
-        outcomes = tuple(test.pushed(Push(settings.impulse, each)) for test in tests for each in DIRECTIONS)
+        outcomes = tuple(
+            test.pushed(Push(settings.impulse, direction))
+            for test in together.tests(conditions).values()
+            for direction in dict.fromkeys(different_directions(test).values())
+        )
     return FoundPushes(margin, alone, outcomes)
 
 

@@ -21,6 +21,7 @@ from evodesign.records.evaluations import (
     Gradients,
     ReachOutcome,
     Turn,
+    WeakestPush,
 )
 from evodesign.records.parameters import (
     Constraint,
@@ -90,6 +91,7 @@ __all__ = [
     "Status",
     "Task",
     "Turn",
+    "WeakestPush",
     "choice_at",
     "design_of",
     "evenly",

@@ -87,6 +87,20 @@ class Gradients(Record, frozen=True, omit_defaults=True):
     cases: dict[str, tuple[CaseGradient, ...]] = msgspec.field(default_factory=dict)
 
 
+class WeakestPush(Record, frozen=True):
+    """Where a push margin is least.
+
+    Attributes:
+        moment: of the plan, such as `short, 0.8 m`.
+        direction_deg: to which the push goes, from forwards to the robot's left.
+        reason: what a larger one does; empty where none was tried.
+    """
+
+    moment: str
+    direction_deg: float
+    reason: str
+
+
 class Assessment(Record, frozen=True):
     """The results of a design: a property of problem and genome alone.
 
@@ -97,6 +111,7 @@ class Assessment(Record, frozen=True):
     (`evodesign.violations`). `judged` holds the objectives of a design that IPOPT solved, too, to judge the
     native method (`evodesign.evaluation.judge`). `gradients` is there where the search asked for them.
     `rated` holds the rated torques [N m] of sized actuators, by the parameter that is their margin.
+    `weakest` says of each push margin where it is least.
     """
 
     design: dict[str, float]
@@ -110,6 +125,7 @@ class Assessment(Record, frozen=True):
     judged: dict[str, float] | msgspec.UnsetType = msgspec.UNSET
     gradients: Gradients | msgspec.UnsetType = msgspec.UNSET
     rated: dict[str, float] | msgspec.UnsetType = msgspec.UNSET
+    weakest: dict[str, WeakestPush] | msgspec.UnsetType = msgspec.UNSET
 
     def __repr__(self) -> str:
         return f"<assessment: {self.summary}>"
@@ -128,6 +144,11 @@ class Assessment(Record, frozen=True):
     def rated_torques(self) -> dict[str, float]:
         """Those of sized actuators [N m], by the parameter that is their margin, if there are any."""
         return {} if self.rated is msgspec.UNSET else self.rated
+
+    @property
+    def weakest_pushes(self) -> dict[str, WeakestPush]:
+        """Where each push margin is least, by its name, if there are any."""
+        return {} if self.weakest is msgspec.UNSET else self.weakest
 
     @property
     def constrained(self) -> dict[str, float]:

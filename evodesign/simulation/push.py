@@ -1,7 +1,7 @@
 """A push on somebody's trunk, and what comes of it: who falls, where the load goes, which limits break.
 
 A push is a horizontal force on the trunk's centre of mass. A simulation ends when somebody
-falls, the load is too far off, a limit is broken for too long, or all have recovered.
+falls, the load is too far off, a limit is broken for too long, or all have recovered and a lift is over.
 """
 
 from __future__ import annotations
@@ -97,10 +97,14 @@ class PushTest:
         scene: with its controllers.
         path: height of the load's centre at each answer [m], the last one from then on; None without a load.
         moment: of the pushes.
+        is_symmetric: whether everything is its own mirror image, so that a push to the left does what one to
+            the right does.
     """
 
-    def __init__(self, scene: ControlledScene, path: Array | None, moment: Snapshot) -> None:
-        self.scene, self._path, self._moment = scene, path, moment
+    def __init__(
+        self, scene: ControlledScene, path: Array | None, moment: Snapshot, *, is_symmetric: bool
+    ) -> None:
+        self.scene, self._path, self._moment, self.is_symmetric = scene, path, moment, is_symmetric
 
     def pushed(self, push: Push, frames: bool = False) -> PushOutcome:
         """What comes of a push.
@@ -117,14 +121,15 @@ class PushTest:
         watched = _PushRecord(scene, push.agent)
         states, forces, every = [], [], max(1, round(FRAME / scene.timing.step))
         lasting = round(push.seconds / scene.timing.step)
-        for number in range(round(WATCHED_SECONDS / scene.timing.step)):
+        ending = max(lasting, 0 if self._path is None else len(self._path) - 1 - scene.number)
+        for number in range(max(ending, round(WATCHED_SECONDS / scene.timing.step))):
             now = force if number < lasting else np.zeros(3)
             scene.engine.push(push.agent, agent.pushed_frame, now)
             if frames and number % every == 0:
                 states.append(np.array(scene.engine.coordinates))
                 forces.append(now)
             watched.saw(scene.advance(), self.load_off())
-            if watched.reason or (number >= lasting and watched.is_back):
+            if watched.reason or (number >= ending and watched.is_back):
                 break
         return PushOutcome(
             push=push,

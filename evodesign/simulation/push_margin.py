@@ -1,9 +1,8 @@
 """The largest push that is survived, in each of eight directions or in the weakest of them.
 
-Bisection between an impulse that is survived and one that is not. Who survives an impulse need not survive
-every smaller one: near the margin outcomes alternate, so what bisection finds counts only if two smaller ones
-are survived. For the weakest direction alone every other one is only tried at the least margin so far,
-and bisected where it fails there.
+Bisection between an impulse that is survived and one that is not. For the weakest direction alone every other
+one is only tried at the least margin so far, and bisected where it fails there. Where everything is its own
+mirror image, one of each two mirrored directions is pushed.
 """
 
 from __future__ import annotations
@@ -12,16 +11,13 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from evodesign.simulation.push import Push, PushOutcome, PushTest
+from evodesign.simulation.push import Push, PushTest
 
 DIRECTIONS = tuple(math.radians(each) for each in (180.0, 0.0, 90.0, 270.0, 135.0, 225.0, 45.0, 315.0))
 """Of pushes, from forwards to the left [rad]: the weaker ones of most robots first."""
 
 RESOLUTION = 0.02
 """Of a margin, relative."""
-
-BELOW = (0.95, 0.85)
-"""Shares of a margin that have to be survived too, or it is searched below the one that is not."""
 
 SMALLEST = 0.1
 """An impulse [N s]: who does not survive it has no margin."""
@@ -55,7 +51,6 @@ def margin_in(
     push: Push,
     mass: float,
     most: float = math.inf,
-    resolution: float | None = None,
 ) -> Margin:
     """The margin in one direction.
 
@@ -65,40 +60,48 @@ def margin_in(
         push: of any impulse: who is pushed, where to and for how long.
         mass: of the agent [kg].
         most: an impulse of which no more is asked [N s].
-        resolution: of the margin, relative; None: `RESOLUTION`.
     """
-    outcomes: dict[float, PushOutcome] = {}
+    reason, trials = "", 0
 
     def fails(impulse: float) -> bool:
-        outcomes[impulse] = tests.pushed(replace(push, impulse=impulse))
-        return not outcomes[impulse].survived
+        nonlocal reason, trials
+        outcome, trials = tests.pushed(replace(push, impulse=impulse)), trials + 1
+        reason = outcome.reason or reason
+        return not outcome.survived
 
     low, high = 0.0, min(FIRST * mass, most) if math.isinf(most) else most
     while not fails(high):
         low = high
         if high >= min(most, FASTEST * mass):
-            return Margin(moment, push.direction, high, "", len(outcomes))
+            return Margin(moment, push.direction, high, "", trials)
         high = min(2.0 * high, most, FASTEST * mass)
-    while True:
-        while high - low > max((resolution or RESOLUTION) * high, SMALLEST):
-            middle = (low + high) / 2.0
-            low, high = (low, middle) if fails(middle) else (middle, high)
-        lost = next((share * low for share in BELOW if low > 0.0 and fails(share * low)), None)
-        if lost is None:
-            return Margin(moment, push.direction, low, outcomes[high].reason, len(outcomes))
-        high = lost
-        low = max((each for each, found in outcomes.items() if each < lost and found.survived), default=0.0)
+    while high - low > max(RESOLUTION * high, SMALLEST):
+        middle = (low + high) / 2.0
+        low, high = (low, middle) if fails(middle) else (middle, high)
+    return Margin(moment, push.direction, low, reason, trials)
+
+
+def different_directions(test: PushTest, directions: Sequence[float] = ()) -> dict[float, float]:
+    """Of each direction, or of all, the one whose push does the same: itself or its mirror image."""
+    kept: dict[float, float] = {}
+    for direction in directions or DIRECTIONS:
+        mirrored = (each for each in kept.values() if math.isclose(each + direction, math.tau))
+        kept[direction] = next(mirrored, direction) if test.is_symmetric else direction
+    return kept
 
 
 def margins(
     tests: Mapping[str, PushTest], agent: str, mass: float, directions: Sequence[float] = ()
 ) -> tuple[Margin, ...]:
     """The margin in every direction at every moment; arguments as `margin_in`."""
-    return tuple(
-        margin_in(test, name, Push(0.0, direction, agent), mass)
-        for name, test in tests.items()
-        for direction in directions or DIRECTIONS
-    )
+    found = []
+    for name, test in tests.items():
+        same = different_directions(test, directions)
+        own = {
+            each: margin_in(test, name, Push(0.0, each, agent), mass) for each in dict.fromkeys(same.values())
+        }
+        found += [replace(own[like], direction=direction) for direction, like in same.items()]
+    return tuple(found)
 
 
 def least_margin(
@@ -107,7 +110,7 @@ def least_margin(
     """The smallest of them, without finding the others; None without moments."""
     least, trials = None, 0
     for name, test in tests.items():
-        for direction in directions or DIRECTIONS:
+        for direction in dict.fromkeys(different_directions(test, directions).values()):
             most = math.inf if least is None else least.impulse
             found = margin_in(test, name, Push(0.0, direction, agent), mass, most)
             trials += found.trials

@@ -15,12 +15,13 @@ import numpy as np
 from evodesign.control.gains import Feedback
 from evodesign.control.moving_body import MovingBody
 from evodesign.control.target import Target, lift_targets, target_of
-from evodesign.errors import InputError
+from evodesign.errors import InputError, ModelError
 from evodesign.mechanics.agent import ROBOT
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import Scene, scene_of
 from evodesign.motion.course import LiftCourse
 from evodesign.posture.results import AgentPosture
+from evodesign.posture.symmetry import symmetric_forms
 from evodesign.records import Case
 from evodesign.simulation.controlled import ControlledScene, Targets, Timing
 from evodesign.simulation.engine import EngineMaker
@@ -130,6 +131,20 @@ class PushedPlan:
         held = cls.hold(scenes, robot, case, first, float(course.heights(np.zeros(1))[0]))
         return replace(held, course=course)
 
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether everybody and the load are their own mirror images, in a lift at all moments of pushes."""
+        agents = (replace(each, tree=self.trees[each.name]) for each in self.scene.agents)
+        try:
+            forms = symmetric_forms(self.scene.with_agents(*agents))
+        except ModelError:
+            return False
+        moments = [self.postures]
+        if self.course is not None:
+            times = [share * self.course.lift.seconds for share in (*LIFT_SHARES, 1.0)]
+            moments += [instant.postures for instant in self.course.instants(times)]
+        return all(form.mirrors(postures[form.agent.name]) for postures in moments for form in forms)
+
     def tests(self, conditions: PushConditions, *, alone: bool = False) -> dict[str, PushTest]:
         """Pushes at each of its moments, by name.
 
@@ -150,7 +165,9 @@ class PushedPlan:
         }
         controlled = self._controlled(lambda _: targets, conditions)
         _advance(controlled, SETTLING)
-        return PushTest(controlled, np.array([self.height]), controlled.snapshot())
+        return PushTest(
+            controlled, np.array([self.height]), controlled.snapshot(), is_symmetric=self.is_symmetric
+        )
 
     def _alone(self, conditions: PushConditions) -> PushTest:
         robot = replace(self.scene.robot, contacts=self.scene.robot.feet)
@@ -169,7 +186,7 @@ class PushedPlan:
         while controlled.number * conditions.timing.step < SHIFTING:
             if np.linalg.norm(controlled.advance()[robot.name].capture) < ABOVE:
                 break
-        return PushTest(controlled, None, controlled.snapshot())
+        return PushTest(controlled, None, controlled.snapshot(), is_symmetric=self.is_symmetric)
 
     def _lifted(self, course: LiftCourse, conditions: PushConditions) -> dict[str, PushTest]:
         step, seconds = conditions.timing.step, course.lift.seconds
@@ -181,11 +198,11 @@ class PushedPlan:
             return {name: each[min(number, len(times) - 1)] for name, each in planned.items()}
 
         tests: dict[str, PushTest] = {}
-        controlled = self._controlled(targets, conditions)
+        controlled, mirrored = self._controlled(targets, conditions), self.is_symmetric
         for share in LIFT_SHARES:
             _advance(controlled, share * seconds - controlled.number * step)
             name = f"{self.name}, after {share * seconds:.2g} s"
-            tests[name] = PushTest(controlled, heights, controlled.snapshot())
+            tests[name] = PushTest(controlled, heights, controlled.snapshot(), is_symmetric=mirrored)
         return tests
 
     def _controlled(self, targets: Targets, conditions: PushConditions) -> ControlledScene:

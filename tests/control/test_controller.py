@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evodesign.control.controller import Command, WholeBodyController
+from evodesign.control.controller import LEVEL, Command, WholeBodyController, wrench_weights
 from evodesign.control.gains import Feedback
 from evodesign.control.limits import JointLimits
 from evodesign.control.moving_body import MovingBody
@@ -131,6 +131,21 @@ def test_a_hold_without_a_push_is_the_static_plan(
                 share * np.abs(plan).max(), 0.02 if after > 1 else 0.0
             )
             assert np.abs(command.capture).max() < 1e-4
+
+
+def test_wrenches_by_which_feet_work_against_each_other_have_the_weight_of_balance(held: Held) -> None:
+    """Any wrench on the left foot and its opposite on the right one, about the same point of the world."""
+    controller, _, state = _still(held, 1.0)
+    body, generator = controller.body.at(*state), np.random.default_rng(0)
+    left, right = body.feet
+    force, moment = generator.normal(size=(2, 3))
+    world = left.turn @ force, left.turn @ moment + np.cross(left.place - right.place, left.turn @ force)
+    internal = np.concatenate([force, moment, *(-right.turn.T @ each for each in world)])
+    scale = np.repeat([2.0, 5.0, 2.0, 5.0], 3)
+    weights = wrench_weights(body, scale)
+    assert weights @ (scale * internal) == pytest.approx(scale * internal)
+    moving = np.concatenate([foot.jacobian[:, :ROOT] for foot in body.feet]) @ generator.normal(size=ROOT)
+    assert weights @ (moving / scale) == pytest.approx(LEVEL**1.5 * moving / scale)
 
 
 def test_a_program_is_solved_as_its_optimality_says_and_gives_way_where_it_may() -> None:

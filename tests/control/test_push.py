@@ -15,7 +15,7 @@ from evodesign.simulation.controlled import Timing
 from evodesign.simulation.engine import engine_named
 from evodesign.simulation.installed import EngineName
 from evodesign.simulation.push import Push, PushOutcome, PushTest
-from evodesign.simulation.push_margin import least_margin, margin_in, margins
+from evodesign.simulation.push_margin import DIRECTIONS, least_margin, margin_in, margins
 from evodesign.simulation.pushable import refuse_unpushable
 from evodesign.simulation.pushed_plan import PushConditions, PushedDesign, PushedPlan, pushed_cases
 from evodesign.tasks import Hold, Lift
@@ -43,11 +43,12 @@ def test_a_pendulum_survives_until_its_capture_point_leaves_the_sole(
 class Straight(PushTest):
     """Survives what is below an impulse that depends on the direction alone."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, turned: float = 0.5) -> None:
         self.tried: list[Push] = []
+        self.turned, self.is_symmetric = turned, turned == 0.0
 
     def limit(self, direction: float) -> float:
-        return 10.0 - 4.0 * math.cos(direction - 0.5)
+        return 10.0 - 4.0 * math.cos(direction - self.turned)
 
     def pushed(self, push: Push, frames: bool = False) -> PushOutcome:
         self.tried.append(push)
@@ -71,22 +72,40 @@ def test_bisection_finds_the_limit_in_each_direction_and_the_least_with_fewer_tr
     assert margin_in(least, "hold", Push(0.0, 0.0), 30.0, most=2.0).impulse == 2.0
 
 
-class Alternating(Straight):
-    """Survives 8.9 to 10 N s by chance, though 8 N s are lost."""
-
-    def pushed(self, push: Push, frames: bool = False) -> PushOutcome:
-        survived = push.impulse < 8.0 or 8.9 < push.impulse < 10.0
-        return PushOutcome(push, "" if survived else "robot falls", 1.0, None, 0.0, 0.0, 0.0)
-
-
-def test_a_margin_beyond_a_smaller_push_that_is_lost_does_not_count() -> None:
-    found = margin_in(Alternating(), "hold", Push(0.0, 0.0), 30.0)
-    assert 0.97 * 8.0 < found.impulse < 8.0
-
-
 def pushed(held: Held, conditions: PushConditions | None = None, *, alone: bool = False) -> PushTest:
     plan = PushedPlan("hold", held.scene, held.trees, held.solution.postures, HEIGHT)
     return PushedDesign((plan,), alone).tests(conditions or PushConditions())["hold"]
+
+
+def test_of_two_mirrored_directions_one_is_pushed_where_everything_is_its_own_mirror_image() -> None:
+    mirrored = Straight(turned=0.0)
+    found = margins({"hold": mirrored}, "robot", 30.0)
+    assert [math.degrees(each.direction) for each in found] == pytest.approx(
+        [math.degrees(each) for each in DIRECTIONS]
+    )
+    for margin in found:
+        assert mirrored.limit(margin.direction) * 0.975 < margin.impulse <= mirrored.limit(margin.direction)
+    assert len({push.direction for push in mirrored.tried}) == 5
+    few = margins({"hold": Straight(turned=0.0)}, "robot", 30.0, [math.radians(270.0)])
+    assert [each.direction for each in few] == [math.radians(270.0)]
+
+
+@pytest.mark.parametrize("direction", [90.0, 135.0])
+def test_a_push_to_the_left_does_what_one_to_the_right_does(pushed_hold: PushTest, direction: float) -> None:
+    assert pushed_hold.is_symmetric
+    left, right = (
+        pushed_hold.pushed(Push(8.0, math.radians(turn))) for turn in (direction, 360.0 - direction)
+    )
+    assert (left.reason, left.seconds, left.recovery) == (right.reason, right.seconds, right.recovery)
+    assert left.load_off == pytest.approx(right.load_off, rel=1e-6)
+
+
+def test_a_posture_that_leans_to_a_side_is_no_mirror_image(held: Held) -> None:
+    robot = held.solution.postures["robot"]
+    leaning = {**held.solution.postures, "robot": replace(robot, joints={**robot.joints, "torso_roll": 1e-3})}
+    plan = PushedPlan("hold", held.scene, held.trees, held.solution.postures, HEIGHT)
+    assert plan.is_symmetric
+    assert not replace(plan, postures=leaning).is_symmetric
 
 
 @pytest.fixture(scope="module")

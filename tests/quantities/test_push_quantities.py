@@ -39,8 +39,7 @@ def test_a_feasible_design_is_pushed_and_one_that_breaks_a_bound_is_not(
     evaluator: Evaluator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("evodesign.simulation.push_margin.RESOLUTION", 0.5)
-    for module in ("simulation.push_margin", "evaluation.pushes"):
-        monkeypatch.setattr(f"evodesign.{module}.DIRECTIONS", (0.0,))
+    monkeypatch.setattr("evodesign.simulation.push_margin.DIRECTIONS", (0.0,))
     problem = evaluator.problem
     design = problem.space.unscaled(problem.scene.robot.tree)
     result = evaluator.solve(design)
@@ -48,6 +47,9 @@ def test_a_feasible_design_is_pushed_and_one_that_breaks_a_bound_is_not(
     mass = float(result.tree.mass)
     assert found.violation == 0.0
     assert PUSH["impulse_n_s"] / 2.0 < found.objectives["push_margin"] <= FASTEST * mass
+    weakest = found.weakest_pushes["push_margin"]
+    assert (weakest.moment, weakest.direction_deg) == ("1 m", 0.0)
+    assert weakest.reason
     assert 0.0 < found.objectives["load_tracking"] < 0.1
     assert 0.0 < found.constraints["recovery_seconds"] < 2.9
     heavy = tuple(replace_bound(each, mass - 1.0) for each in problem.constraints)

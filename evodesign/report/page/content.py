@@ -12,7 +12,16 @@ from typing import Any
 
 from msgspec import Struct
 
-from evodesign.records import CaseDetail, CaseOutcome, Constraint, Generation, Objective, Parameter, Task
+from evodesign.records import (
+    CaseDetail,
+    CaseOutcome,
+    Constraint,
+    Generation,
+    Objective,
+    Parameter,
+    Task,
+    WeakestPush,
+)
 
 
 class Part(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -287,6 +296,7 @@ class DesignContent(Part, frozen=True):
     Attributes:
         cases: how each ended, without the disturbances, which the page never shows one by one.
         people: mean and standard deviation over the problem's people, by quantity.
+        weakest: where push margins are least, by quantity.
         postures: one per solved case; empty when the log or the page's limit leaves them out.
         clearances: as many as postures; none where a posture is of a stranger to the run's problem.
         efforts: of the person, likewise.
@@ -304,6 +314,7 @@ class DesignContent(Part, frozen=True):
 
     cases: tuple[CaseOutcome, ...]
     people: dict[str, tuple[float, float]] = {}
+    weakest: dict[str, WeakestPush] = {}
     postures: tuple[CaseDetail, ...] = ()
     clearances: tuple[ClearanceContent, ...] = ()
     efforts: tuple[EffortContent, ...] = ()

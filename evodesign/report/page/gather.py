@@ -227,6 +227,7 @@ def _designs(
         evaluation.number: replace(
             _design(known, evaluation, opened.get(evaluation.number), recorded),
             people=over_people(quantities, evaluation.assessment.cases),
+            weakest=evaluation.assessment.weakest_pushes,
         )
         for evaluation in shown
         if evaluation.number in wanted

@@ -12,6 +12,16 @@ const peopleText = (number, name) => {
   return spread ? `people ${figure(spread.mean, 3)} ± ${figure(spread.deviation, 2)}` : "";
 };
 
+// By eighths of a turn, from forwards to the robot's left.
+const DIRECTIONS = ["forwards", "forwards to the left", "to the left", "backwards to the left", "backwards", "backwards to the right", "to the right", "forwards to the right"];
+
+const weakestText = (number, name) => {
+  const weakest = content.designs[number]?.weakest?.[name];
+  if (!weakest) return "";
+  const [pushed, place] = [DIRECTIONS[Math.round(weakest.direction_deg / 45) % 8], weakest.moment ? ` at ${weakest.moment}` : ""];
+  return `weakest pushed ${pushed}${place}${weakest.reason ? `: ${weakest.reason}` : ""}`;
+};
+
 const worth = (row) =>
   element(
     "dl",
@@ -32,6 +42,7 @@ const worth = (row) =>
             ...{ class: "against", "data-spread": axis.name, text: peopleText(points.number[row], axis.name) },
             title: "Mean and standard deviation over the people of the problem, or over those that were sampled",
           }),
+          element("span", { class: "against", "data-weakest": axis.name, text: weakestText(points.number[row], axis.name) }),
           constraint
             ? element("span", {
                 class: isBeyond(constraint, value) ? "against beyond" : "against",
