@@ -1,11 +1,12 @@
 """Push margins of the designs of a run: time, half the step, other conditions, rankings, and who solves.
 
-For the first feasible designs of a run the least push margin of the first hold is found (and of the robot
-alone), again with half of all steps, and under other friction, load mass and sensor delay; Kendall's tau
-between mass, torques and margins goes over all of them. The quadratic programs that come up after a push are
-solved by each library that is installed (`pip install quadprog piqp`).
+For the first feasible designs of a run the least push margin of the first hold is found, again with half the
+step of the integration and with half of all steps, and under other friction, load mass and sensor delay.
+Kendall's tau is that between all that the log of a run says of its feasible designs, torques and margins
+among them. The quadratic programs that come up after a push are solved by each library that is installed
+(`pip install quadprog piqp`).
 
-    python -m benchmarks.push RUN [--designs 10] [--half] [--others] [--solvers]
+    python -m benchmarks.push RUN [--designs 10] [--half] [--others] [--rankings] [--solvers]
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ import evodesign.control.controller as controller
 from evodesign.control.quadratic import QuadraticSolution, least_squares
 from evodesign.evaluation.progress import SILENT
 from evodesign.evaluation.pushes import PERTURBED, pushed_holds
-from evodesign.mechanics.agent import HUMAN, ROBOT
+from evodesign.mechanics.agent import ROBOT
 from evodesign.report.opened_design import open_design
 from evodesign.runlog.run import read_run
 from evodesign.simulation.controlled import Timing
@@ -54,29 +55,35 @@ def margin(pushed: PushedDesign, conditions: PushConditions) -> tuple[Margin, fl
 
 
 def designs(run: Path, count: int, conditions: Mapping[str, PushConditions]) -> None:
-    """Print each design's margins, and how rankings agree."""
-    log, rows = read_run(run), []
-    feasible = [each for each in log.evaluations if each.assessment.violation == 0.0][:count]
+    """Print the margins of the first feasible designs under each of the conditions."""
+    feasible = [each for each in read_run(run).evaluations if each.assessment.violation == 0.0][:count]
     for each in feasible:
         pushed = first_hold(run, each.number)
         found = {name: margin(pushed, other) for name, other in conditions.items()}
-        alone, spent = margin(replace(pushed, alone=True), PushConditions())
-        torques = dict.fromkeys((ROBOT, HUMAN), 0.0)
-        for role in torques:
-            agents = [own for name, own in pushed.plans[0].postures.items() if name.startswith(role)]
-            torques[role] = float(np.linalg.norm([own.torque_norm for own in agents]))
-        rows.append([pushed.mass, *torques.values(), found["as planned"][0].impulse, alone.impulse])
-        told = ", ".join(f"{name} {m.impulse:.2f} N s ({s:.1f} s)" for name, (m, s) in found.items())
         weakest = found["as planned"][0]
+        changes = (
+            f"{name} {m.impulse:.2f} N s ({100.0 * (m.impulse / weakest.impulse - 1.0):+.1f} %, {s:.1f} s)"
+            for name, (m, s) in found.items()
+        )
         print(
-            f"design {each.number}, {pushed.mass:.1f} kg: {told}, "
-            f"alone {alone.impulse:.2f} ({spent:.1f} s); "
+            f"design {each.number}, {pushed.mass:.1f} kg: {', '.join(changes)}; "
             f"to {np.degrees(weakest.direction):.0f} degrees: {weakest.reason}",
             flush=True,
         )
-    names = ("mass", "robot torque", "human torque", "margin", "margin alone")
-    for (first, a), (second, b) in combinations(zip(names, np.array(rows).T, strict=True), 2):
-        print(f"tau of {first} and {second}: {scipy.stats.kendalltau(a, b).statistic:.2f}")
+
+
+def rankings(run: Path) -> None:
+    """Print Kendall's tau between all that the log says of its feasible designs."""
+    rows = []
+    for each in read_run(run).evaluations:
+        found = each.assessment
+        if found.violation == 0.0:
+            norms = [case.robot_torque_norm for case in found.cases if case.robot_torque_norm is not None]
+            rows.append({**found.objectives, **found.constrained, "robot torque": float(np.mean(norms))})
+    print(f"{len(rows)} feasible designs")
+    for one, other in combinations(rows[0], 2):
+        tau = scipy.stats.kendalltau([row[one] for row in rows], [row[other] for row in rows])
+        print(f"tau of {one} and {other}: {tau.statistic:.2f} (p = {tau.pvalue:.2g})")
 
 
 def recorded(run: Path, design: int) -> list[Program]:
@@ -144,21 +151,25 @@ def main() -> None:
     """Parse and run."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("run", type=Path)
-    parser.add_argument("--designs", type=int, default=10)
+    parser.add_argument("--designs", type=int, default=0)
     parser.add_argument("--half", action="store_true")
     parser.add_argument("--others", action="store_true")
+    parser.add_argument("--rankings", action="store_true")
     parser.add_argument("--solvers", action="store_true")
     given = parser.parse_args()
     usual = Timing()
     conditions = {"as planned": PushConditions()}
     if given.half:
-        conditions["half the step"] = PushConditions(timing=replace(usual, step=usual.step / 2.0))
+        conditions["half the step"] = PushConditions(timing=replace(usual, substeps=2 * usual.substeps))
+        conditions["half of all steps"] = PushConditions(timing=replace(usual, step=usual.step / 2.0))
     if given.others:
         conditions["friction"] = PushConditions(friction=PERTURBED["friction"])
         conditions["load mass"] = PushConditions(mass=PERTURBED["mass"])
         conditions["sensor delay"] = PushConditions(timing=replace(usual, delay=int(PERTURBED["delay"])))
     if given.solvers:
         solvers(given.run)
+    if given.rankings:
+        rankings(given.run)
     if given.designs:
         designs(given.run, given.designs, conditions)
 

@@ -54,7 +54,9 @@ def simulate(
     damping: Damping = 1.0,
     push: Annotated[
         float | None,
-        typer.Option(metavar="N_S", help="Push the robot in its holds, by this impulse [N s] on its trunk."),
+        typer.Option(
+            metavar="N_S", help="Push the robot in holds and lifts, by this impulse [N s] on its trunk."
+        ),
     ] = None,
     direction: Annotated[
         float, typer.Option(metavar="DEG", help="To where, from forwards to the left.")
