@@ -31,9 +31,13 @@ from tests.simulation.engines import ENGINES
 def test_a_pendulum_survives_until_its_capture_point_leaves_the_sole(
     pendulum: Pendulum, engine: EngineName
 ) -> None:
-    """The largest impulse is the closed form's within 5 %, so it grows with sole and torque as that does."""
+    """The largest impulse is the closed form's, so it grows with sole and torque as that does.
+
+    Within 5 % in MuJoCo, whose floor gives way, and 2 % in Drake.
+    """
+    within = {EngineName.MUJOCO: 0.05, EngineName.DRAKE: 0.02}[engine]
     tests, impulse = pendulum.test(engine=engine_named(engine)), pendulum.survived()
-    pushes = [tests.pushed(Push(share * impulse, 0.0, seconds=0.02)) for share in (0.95, 1.05)]
+    pushes = [tests.pushed(Push(share * impulse, 0.0, seconds=0.02)) for share in (1.0 - within, 1.0 + within)]
     assert [each.survived for each in pushes] == [True, False]
     assert pushes[1].reason == "robot falls"
     assert pushes[0].recovery is not None
