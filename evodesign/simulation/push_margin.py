@@ -13,11 +13,14 @@ from dataclasses import dataclass, replace
 
 from evodesign.simulation.push import Push, PushTest
 
-DIRECTIONS = tuple(math.radians(each) for each in (180.0, 0.0, 90.0, 270.0, 135.0, 225.0, 45.0, 315.0))
+DIRECTIONS = tuple(math.radians(each) for each in (90.0, 270.0, 0.0, 135.0, 225.0, 180.0, 45.0, 315.0))
 """Of pushes, from forwards to the left [rad]: the weaker ones of most robots first."""
 
 RESOLUTION = 0.02
 """Of a margin, relative."""
+
+NEAR = 0.2
+"""A direction that is weaker than the weakest so far mostly is so by less than this share."""
 
 SMALLEST = 0.1
 """An impulse [N s]: who does not survive it has no margin."""
@@ -75,9 +78,13 @@ def margin_in(
         if high >= min(most, FASTEST * mass):
             return Margin(moment, push.direction, high, "", trials)
         high = min(2.0 * high, most, FASTEST * mass)
+    step = 0.5 if math.isinf(most) else NEAR
     while high - low > max(RESOLUTION * high, SMALLEST):
-        middle = (low + high) / 2.0
-        low, high = (low, middle) if fails(middle) else (middle, high)
+        middle = (low + high) / 2.0 if low > 0.0 else (1.0 - step) * high
+        if fails(middle):
+            high, step = middle, min(2.0 * step, 0.5)
+        else:
+            low = middle
     return Margin(moment, push.direction, low, reason, trials)
 
 

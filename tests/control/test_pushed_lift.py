@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from evodesign.cli.push import pushed_in
 from evodesign.control.gains import Feedback
-from evodesign.errors import InputError
-from evodesign.evaluation.progress import SILENT
 from evodesign.motion.course import LiftCourse
 from evodesign.motion.solution import LiftSolution
-from evodesign.records import Case, CaseDetail, Status
+from evodesign.records import Case
 from evodesign.simulation.push import Push, PushTest
 from evodesign.simulation.pushed_plan import PushConditions, PushedDesign, PushedPlan
 from tests.motion.conftest import lifted, solution
@@ -68,27 +63,3 @@ def test_a_robot_alone_is_pushed_as_it_stands_at_the_beginning_of_a_lift(
     (name, test), *others = plan.tests(PushConditions(), alone=True).items()
     assert (name, others) == (str(LIFT), [])
     assert test.pushed(Push(3.0, 0.0)).survived
-
-
-def test_the_command_line_pushes_lifts_that_are_solved_anew_and_says_which_are_not(
-    lifted: Lifted, solution: LiftSolution, capsys: pytest.CaptureFixture[str]
-) -> None:
-    scene, failed = (
-        lifted.setting.scene,
-        replace(solution, status=Status.INFEASIBLE, reason="too far", course=None),
-    )
-
-    def asked(found: LiftSolution) -> PushedDesign:
-        opened = SimpleNamespace(
-            cases=(CaseDetail(case=Case(task=LIFT), instants=()),),
-            rebuilt=SimpleNamespace(problem=SimpleNamespace(scenes=[scene])),
-            scene_set=lambda: SimpleNamespace(robot=scene.robot.tree),
-            lifts=lambda lift, jobs, progress: {scene.pair: found} if (lift, jobs) == (LIFT, 1) else {},
-        )
-        return pushed_in(opened, ((), None, None), 1, SILENT)
-
-    (plan,) = asked(solution).plans
-    assert (plan.name, plan.course) == (str(LIFT), solution.course)
-    with pytest.raises(InputError, match="a hold or a lift that was found"):
-        asked(failed)
-    assert f"no lift {LIFT}: too far" in " ".join(capsys.readouterr().err.split())
