@@ -28,7 +28,7 @@ from evodesign.posture.results import AgentPosture, Array, CaseSolution, Instant
 from evodesign.problem.build import DesignProblem
 from evodesign.quantities.design_result import DesignResult
 from evodesign.quantities.objectives import objective_values
-from evodesign.quantities.push_quantities import ALONE, MARGIN, unsimulated
+from evodesign.quantities.push_quantities import unsimulated, weakest_pushes
 from evodesign.records import (
     ActiveLimit,
     AgentDetail,
@@ -43,7 +43,6 @@ from evodesign.records import (
     ProblemSource,
     ReachOutcome,
     Status,
-    WeakestPush,
     worst_status,
 )
 from evodesign.searches.surrogate.threads import one_thread
@@ -144,14 +143,13 @@ class Evaluator:
         if any(solution.status is Status.BODIES_OVERLAP for solution in failed):  # nothing else is known
             known = tuple(constraint for constraint in constraints if constraint.name == BODIES_APART)
         cases = tuple(case_outcome(solution, native=self._native) for solution in result.cases)
-        missed, pushes = missed_height(reach, cases), self.problem.pushes
+        missed = missed_height(reach, cases)
         constrained = objective_values(unsimulated(known), result)
         violation = total_violation(unsimulated(constraints), constrained, missed)
-        if violation == 0.0 and pushes is not None:
+        if violation == 0.0 and self.problem.pushes is not None:
             from evodesign.evaluation.pushes import found_pushes  # MuJoCo takes its time to load
 
-            names = [*(each.name for each in self.problem.objectives), *(each.name for each in constraints)]
-            result = replace(result, pushes=found_pushes(result, pushes, names))
+            result = replace(result, pushes=found_pushes(result, self.problem.pushes, self.problem))
             constrained = objective_values(known, result)
             violation = total_violation(constraints, constrained, missed)
         return Assessment(
@@ -163,8 +161,8 @@ class Evaluator:
             reach=reach,
             cases=cases,
             constraints=constrained or msgspec.UNSET,
-            rated=rated_of(result) or msgspec.UNSET,
-            weakest=weakest_of(result) or msgspec.UNSET,
+            rated=result.rated_torques or msgspec.UNSET,
+            weakest=weakest_pushes(result.pushes) or msgspec.UNSET,
         )
 
 
@@ -174,23 +172,6 @@ def _status(result: DesignResult) -> Status:
     if Status.BODIES_OVERLAP in found:
         return Status.BODIES_OVERLAP
     return worst_status([result.reach.status, *found])
-
-
-def rated_of(result: DesignResult) -> dict[str, float]:
-    """The rated torques [N m] of sized actuators, by the parameter that is their margin."""
-    space = result.space
-    return {space.parameters[place].name: result.rated[place] for place in space.margins}
-
-
-def weakest_of(result: DesignResult) -> dict[str, WeakestPush]:
-    """Where each push margin is least, by its name."""
-    pushes = result.pushes
-    found = {} if pushes is None else {MARGIN: pushes.margin, ALONE: pushes.alone}
-    return {
-        name: WeakestPush(margin.moment, math.degrees(margin.direction), margin.reason)
-        for name, margin in found.items()
-        if margin is not None
-    }
 
 
 def reach_of(reach: Reach) -> ReachOutcome:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,6 +12,7 @@ from evodesign.evaluation.logged_posture import logged_posture
 from evodesign.mechanics.agent import ROBOT
 from evodesign.mechanics.scene import Scene
 from evodesign.motion.solution import MotionCase
+from evodesign.problem.build import DesignProblem
 from evodesign.quantities.design_result import DesignResult
 from evodesign.quantities.push_quantities import (
     ALONE,
@@ -66,15 +67,17 @@ def pushed_design(result: DesignResult) -> PushedDesign:
     return PushedDesign(tuple(plans))
 
 
-def found_pushes(result: DesignResult, settings: PushSettings, names: Collection[str]) -> FoundPushes:
+def found_pushes(result: DesignResult, settings: PushSettings, problem: DesignProblem) -> FoundPushes:
     """What simulations say of an evaluated design, all of whose cases are solved.
 
     Args:
         result: of the design.
-        settings: of the problem.
-        names: of the quantities that are asked for.
+        settings: of pushes.
+        problem: whose quantities ask for them.
     """
-    conditions, together = PushConditions(settings.feedback), pushed_design(result)
+    together = pushed_design(result)
+    names = {*(each.name for each in problem.objectives), *(each.name for each in problem.constraints)}
+    conditions = PushConditions(settings.feedback)
     margin = alone = None
     outcomes: tuple[PushOutcome, ...] = ()
     if MARGIN in names:

@@ -148,11 +148,6 @@ class Form:
         own = zip(self.joints, twins, strict=True)
         return found + [0.0 if twin == name else sign * by_joint.get(twin, 0.0) for name, (twin, sign) in own]
 
-    def mirrors(self, posture: AgentPosture) -> bool:
-        """Whether a posture, its torques and its wrenches are what their half says."""
-        own = _numbers(self.expand(self.parts(posture)))
-        return all(np.allclose(own[name], each, 0.0, PARALLEL) for name, each in _numbers(posture).items())
-
     def parts(self, posture: AgentPosture) -> dict[str, Array]:
         """What `expand` takes, from a posture of the whole agent; hands pass six numbers.
 
@@ -165,13 +160,6 @@ class Form:
             "torques": np.array([posture.torques[name] for name in self.joints]),
             **{each.name: posture.wrenches[each.name] for each in self.contacts},
         }
-
-
-def _numbers(posture: AgentPosture) -> dict[str, Any]:
-    """Everything about a posture."""
-    base = {"base position": posture.base_position, "base angles": posture.base_angles}
-    torques = {f"torque of {joint}": torque for joint, torque in posture.torques.items()}
-    return {**base, **posture.joints, **torques, **posture.wrenches}
 
 
 def _moved(posture: AgentPosture, joints: Iterable[str]) -> float:

@@ -62,6 +62,11 @@ class DesignResult:
         return self.rated or self.values
 
     @property
+    def rated_torques(self) -> dict[str, float]:
+        """Of sized actuators [N m], by the parameter that is their margin."""
+        return {self.space.parameters[place].name: self.rated[place] for place in self.space.margins}
+
+    @property
     def robot(self) -> Agent:
         """The robot that designs change, as the file describes it."""
         return self.scenes[0].robot

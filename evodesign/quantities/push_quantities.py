@@ -12,13 +12,14 @@ seconds: they are run for designs alone that keep every other constraint.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
 from evodesign.control.gains import Feedback
 from evodesign.control.limits import WATCHED_SECONDS
-from evodesign.records import Constraint, Objective
+from evodesign.records import Constraint, Objective, WeakestPush
 
 if TYPE_CHECKING:
     from evodesign.quantities.design_result import DesignResult
@@ -66,6 +67,16 @@ class FoundPushes:
     margin: Margin | None = None
     alone: Margin | None = None
     outcomes: tuple[PushOutcome, ...] = ()
+
+
+def weakest_pushes(pushes: FoundPushes | None) -> dict[str, WeakestPush]:
+    """Where each push margin is least, by its name."""
+    found = {} if pushes is None else {MARGIN: pushes.margin, ALONE: pushes.alone}
+    return {
+        name: WeakestPush(margin.moment, math.degrees(margin.direction), margin.reason)
+        for name, margin in found.items()
+        if margin is not None
+    }
 
 
 def push_margin(result: DesignResult) -> float | None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.scene import Scene, scene_of
 from evodesign.motion.course import LiftCourse
 from evodesign.posture.results import AgentPosture
-from evodesign.posture.symmetry import symmetric_forms
+from evodesign.posture.symmetry import PARALLEL, Form, symmetric_forms
 from evodesign.records import Case
 from evodesign.simulation.controlled import ControlledScene, Targets, Timing
 from evodesign.simulation.engine import EngineMaker
@@ -143,7 +144,7 @@ class PushedPlan:
         if self.course is not None:
             times = [share * self.course.lift.seconds for share in (*LIFT_SHARES, 1.0)]
             moments += [instant.postures for instant in self.course.instants(times)]
-        return all(form.mirrors(postures[form.agent.name]) for postures in moments for form in forms)
+        return all(_mirrors(form, postures[form.agent.name]) for postures in moments for form in forms)
 
     def tests(self, conditions: PushConditions, *, alone: bool = False) -> dict[str, PushTest]:
         """Pushes at each of its moments, by name.
@@ -252,6 +253,18 @@ class PushedDesign:
             for plan in self.plans
             for name, test in plan.tests(conditions, alone=self.alone).items()
         }
+
+
+def _mirrors(form: Form, posture: AgentPosture) -> bool:
+    """Whether a posture, its torques and its wrenches are what their half says."""
+    own, found = _numbers(form.expand(form.parts(posture))), _numbers(posture)
+    return all(np.allclose(own[name], each, 0.0, PARALLEL) for name, each in found.items())
+
+
+def _numbers(posture: AgentPosture) -> dict[str, Any]:
+    torques = {f"torque of {joint}": torque for joint, torque in posture.torques.items()}
+    base = np.concatenate([posture.base_position, posture.base_angles])
+    return {"base": base, **posture.joints, **torques, **posture.wrenches}
 
 
 def _advance(scene: ControlledScene, seconds: float) -> None:
