@@ -130,8 +130,8 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
 
 
 def _words(problem: DesignProblem) -> dict[str, str]:
-    """What joints and links of everybody are called."""
-    trees = {id(agent.tree): agent.tree for scene in problem.scenes for agent in scene.agents}
+    """What joints and links of the people are called; a robot's keep their names."""
+    trees = {id(person.tree): person.tree for scene in problem.scenes for person in scene.people}
     return {name: words for tree in trees.values() for name, words in words_of(tree).items()}
 
 
