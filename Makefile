@@ -82,7 +82,6 @@ bench: $(VENV)/installed-robots  ## measured ratios, written to benchmarks/resul
 	$(BIN)/python -m benchmarks.many_cases
 	$(BIN)/python -m benchmarks.disturbed_growth
 	$(BIN)/python -m benchmarks.disturbed_ranking
-	$(BIN)/python -m benchmarks.disturbed_speed
 	$(BIN)/python benchmarks/idle_share.py
 	$(BIN)/python benchmarks/overhead.py
 	$(BIN)/python -m benchmarks.public_robots
