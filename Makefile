@@ -82,7 +82,6 @@ bench: $(VENV)/installed-robots  ## measured ratios, written to benchmarks/resul
 	$(BIN)/python -m benchmarks.many_cases
 	$(BIN)/python -m benchmarks.disturbed_growth
 	$(BIN)/python -m benchmarks.disturbed_ranking
-	$(BIN)/python -m benchmarks.disturbed_speed
 	$(BIN)/python benchmarks/idle_share.py
 	$(BIN)/python benchmarks/overhead.py
 	$(BIN)/python -m benchmarks.public_robots
@@ -111,7 +110,7 @@ api: $(VENV)/installed  ## write docs/api.md from the docstrings
 	$(BIN)/python -m docs.write_api
 
 docs: $(VENV)/installed-docs  ## the documentation as a site, in build/site
-	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+	$(BIN)/sphinx-build -W --keep-going -q -c docs . build/site
 
 clean:  ## remove the virtual environment and caches
 	rm -rf $(VENV) build .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache

@@ -50,11 +50,7 @@ def evolve_asynchronously(session: Session, search: AsynchronousSearch) -> None:
 def _asynchronous_evaluations(
     session: Session, search: AsynchronousSearch
 ) -> Generator[Evaluation, None, None]:
-    """Evaluations in the order in which they came, first those that are known; each is told when taken.
-
-    Raises:
-        KeyboardInterrupt: by Ctrl-C, or because a stop was asked for and all that was in flight has arrived.
-    """
+    """Evaluations in the order in which they came, first those that are known; each is told when taken."""
     turns = session.memory.turns()
     for evaluation in _replay(session, search, turns):
         session.front.enters(evaluation)

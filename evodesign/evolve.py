@@ -228,11 +228,7 @@ def _evaluate(session: Session, generation: int, first: int, genomes: Sequence[G
 def _evaluate_missing(
     session: Session, generation: int, missing: Mapping[int, Genome]
 ) -> dict[int, Evaluation]:
-    """Evaluate genomes by number; each evaluation is on the disk before the next is looked at.
-
-    Raises:
-        KeyboardInterrupt: by Ctrl-C, or because `stop` asked for it and all that was in flight has arrived.
-    """
+    """Evaluate genomes by number; each evaluation is on the disk before the next is looked at."""
     numbers, parameters = list(missing), session.header.parameters
     arrived: dict[int, Evaluation] = {}
     results = run_stoppable(session.pool, session.factory(), missing.values(), session.stop)

@@ -19,6 +19,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import msgspec
+
 from evodesign.records import Assessment, CaseOutcome, Constraint, ReachOutcome, Status
 
 HEIGHT = "height"
@@ -189,10 +191,7 @@ def constraints_json(constraints: Sequence[Constraint], assessment: Assessment) 
     found = violations(constraints, assessment)
     return [
         {
-            "name": constraint.name,
-            "unit": constraint.unit,
-            "lower": constraint.lower,
-            "upper": constraint.upper,
+            **msgspec.to_builtins(constraint),
             "value": assessment.constrained.get(constraint.name),
             "violation": found[constraint.name],
         }

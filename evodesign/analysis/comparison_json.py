@@ -6,6 +6,8 @@ import statistics
 from collections.abc import Sequence
 from typing import Any
 
+import msgspec
+
 from evodesign.analysis.comparison import Compared, Comparison, best_designs
 
 
@@ -38,10 +40,7 @@ def comparison_json(comparison: Comparison) -> dict[str, Any]:
             {
                 "search": each.search,
                 "objectives": [objective.name for objective in each.objectives],
-                "surfaces": [
-                    {"share": surface.share, "corners": [list(corner) for corner in surface.corners]}
-                    for surface in each.surfaces
-                ],
+                "surfaces": msgspec.to_builtins(each.surfaces),
             }
             for each in comparison.attainments
         ],
@@ -68,7 +67,6 @@ def hypervolume_summary(members: Sequence[Compared]) -> dict[str, float] | None:
 
 def _run(each: Compared) -> dict[str, Any]:
     header = each.run.header
-    curve = each.curve
     return {
         "run": str(each.run.directory),
         "problem": header.problem_name,
@@ -79,11 +77,5 @@ def _run(each: Compared) -> dict[str, Any]:
         "hypervolume": each.hypervolume,
         "share": each.share,
         "best": each.best,
-        "curve": None
-        if curve is None
-        else {
-            "evaluations": list(curve.evaluations),
-            "hypervolume": list(curve.hypervolume),
-            "best": {name: list(values) for name, values in curve.best.items()},
-        },
+        "curve": msgspec.to_builtins(each.curve),
     }

@@ -21,6 +21,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from evodesign.analysis.conditions import Quantity, quantities, quantity, total
@@ -163,10 +164,7 @@ def families_json(found: Families) -> dict[str, Any]:
     """The kinds of a run as a JSON object; its shape is a promise."""
     return {
         "objective": found.objective.name,
-        "descriptors": [
-            {"name": each.name, "lower": each.lower, "upper": each.upper, "cells": each.cells}
-            for each in found.descriptors
-        ],
+        "descriptors": msgspec.to_builtins(found.descriptors),
         "cells": found.cells,
         "filled": len(found.kinds),
         "coverage": len(found.kinds) / found.cells,

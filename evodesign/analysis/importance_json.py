@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
-from evodesign.analysis.importance import (
-    Estimate,
-    Importance,
-    ObjectiveImportance,
-    Slice,
-    importance,
-    slices,
-)
+import msgspec
+
+from evodesign.analysis.importance import Importance, ObjectiveImportance, importance, slices
 from evodesign.runlog.run import RunLog
 
 METHOD = (
@@ -34,7 +28,8 @@ def matters_json(run: RunLog, design: int | None) -> dict[str, Any]:
     told = {"run": str(run.directory), **importance_json(found)}
     if through is None:
         return told
-    return {**told, "design": design, "slices": slices_json(slices(found, run.header.parameters, through))}
+    made = slices(found, run.header.parameters, through)
+    return {**told, "design": design, "slices": msgspec.to_builtins(made)}
 
 
 def importance_json(found: Importance) -> dict[str, Any]:
@@ -55,33 +50,6 @@ def _objective(found: ObjectiveImportance) -> dict[str, Any]:
         "with_gradients": known.with_gradients,
         "explained": known.explained,
         "reason": known.reason,
-        "parameters": [
-            {
-                "name": each.name,
-                "first": _estimate(each.first),
-                "total": _estimate(each.total),
-                "slope": _estimate(each.slope),
-            }
-            for each in found.parameters
-        ],
-        "pairs": [{"names": list(each.names), "share": _estimate(each.share)} for each in found.pairs],
+        "parameters": msgspec.to_builtins(found.parameters),
+        "pairs": msgspec.to_builtins(found.pairs),
     }
-
-
-def _estimate(found: Estimate | None) -> dict[str, float] | None:
-    return None if found is None else {"value": found.value, "low": found.low, "high": found.high}
-
-
-def slices_json(made: Sequence[Slice]) -> list[dict[str, Any]]:
-    """Slices through a design: values of a parameter, and what is predicted there."""
-    return [
-        {
-            "objective": each.objective,
-            "parameter": each.parameter,
-            "values": list(each.values),
-            "predicted": list(each.predicted),
-            "low": list(each.low),
-            "high": list(each.high),
-        }
-        for each in made
-    ]

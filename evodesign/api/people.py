@@ -119,17 +119,7 @@ def _evaluated(
     pool: Pool,
     stop: Callable[[], bool],
 ) -> Iterator[SampledDesign]:
-    """Designs of a run beside samples of people, as they arrive.
-
-    Args:
-        run: that has the designs.
-        factory: of their evaluation.
-        asked: numbers of samples and designs.
-        pool: where evaluations run.
-        stop: asked whether no further evaluation is to begin.
-    Raises:
-        KeyboardInterrupt: stopped before all had begun.
-    """
+    """Designs of a run beside samples of people, as they arrive."""
     parameters, arrived = run.header.parameters, 0
     designs = {number: run.evaluation(number) for _, number in asked}
     arguments = [

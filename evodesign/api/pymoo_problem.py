@@ -243,11 +243,7 @@ def _in_order(pool: Pool, factory: ValuesFactory, rows: list[tuple[float, ...]])
 
 
 def _assessment(finished: Finished[Assessed]) -> Assessment | None:
-    """The assessment that a worker gave back.
-
-    Raises:
-        EvodesignError: the evaluation raised, as it would have in this process.
-    """
+    """The assessment that a worker gave back."""
     if finished.value is not None:
         return finished.value.assessment
     if finished.worker_lost or finished.out_of_time or finished.out_of_memory:

@@ -107,11 +107,7 @@ def _fitted(compared: Sequence[ComparedCase]) -> list[str]:
 def _cases(
     file: Path | None, stature: float | None, mass: float | None, sex: str | None, points: Path | None
 ) -> tuple[MeasuredCase, ...]:
-    """The shipped cases, or those of a file.
-
-    Raises:
-        InputError: figures of a person without a file, or a file without them or of other content.
-    """
+    """The shipped cases, or those of a file."""
     from evodesign.validation.measured import cases_of, shipped_cases
 
     if file is None:

@@ -84,7 +84,7 @@ def exempt_pairs(tree: Tree, joints: Collection[str]) -> Mapping[BodyPair, str]:
 @once_per_tree
 def _exempt_pairs(tree: Tree, joints: tuple[str, ...]) -> Mapping[BodyPair, str]:
     pairs = _link_pairs(tree)
-    others = [pair for pair in pairs if not _is_joined(tree, pair)]
+    others = [pair for pair in pairs if not is_joined(tree, pair)]
     touching, images = _touching(tree, others), images_of(tree)
     near = {names for pair in touching for names in with_image(pair, images)}
     seldom = [pair for pair in others if frozenset(pair) in near]
@@ -96,7 +96,7 @@ def _exempt_pairs(tree: Tree, joints: tuple[str, ...]) -> Mapping[BodyPair, str]
     found: dict[BodyPair, str] = {}
     for pair in pairs:
         share = shares.get(pair, 0.0)
-        if _is_joined(tree, pair):
+        if is_joined(tree, pair):
             found[pair] = JOINED
         elif _is_still(tree, joints, pair):
             found[pair] = STILL
@@ -131,7 +131,7 @@ def built_in_pairs(
     own = [
         pair
         for pair in _link_pairs(tree)
-        if frozenset(pair) in known or (not _is_joined(tree, pair) and _is_still(tree, joints, pair))
+        if frozenset(pair) in known or (not is_joined(tree, pair) and _is_still(tree, joints, pair))
     ]
     hulls, images = SolidBodies.of_tree(tree).hulls, images_of(tree)
     apart, found = {*own} - _touching(tree, own, hulls), set[BodyPair]()
@@ -216,7 +216,7 @@ def _between(tree: Tree, pair: BodyPair) -> frozenset[str]:
     return one ^ other
 
 
-def _is_joined(tree: Tree, pair: BodyPair) -> bool:
+def is_joined(tree: Tree, pair: BodyPair) -> bool:
     """Whether one joint joins two links, or none, beside fixed ones."""
     kinds = (tree.joint_by_name[name].kind for name in _between(tree, pair))
     return sum(kind is not JointKind.FIXED for kind in kinds) <= 1

@@ -33,12 +33,12 @@ import numpy as np
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Cylinder, Solid, Sphere
 from evodesign.collision.clearance import BodyDistance, PlacedSolids, Places, SolidBodies, places_of
-from evodesign.collision.pairs import TOUCH
+from evodesign.collision.pairs import TOUCH, is_joined
 from evodesign.collision.rules import BodyPair
 from evodesign.collision.shapes import Array, solid_of
 from evodesign.hardware.actuators import Actuator, mounted_solid
 from evodesign.tree.frames import link_frames
-from evodesign.tree.model import Joint, JointKind, Tree
+from evodesign.tree.model import Joint, Tree
 from evodesign.tree.once_per_tree import once_per_tree
 
 ALIKE = 0.7
@@ -48,7 +48,6 @@ PART = "actuator of "
 """How the names of actuators begin."""
 
 Mounted = tuple[Joint, Actuator, Solid]
-Chain = tuple[tuple[str, JointKind, str, str], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,8 +86,7 @@ def part_clearance(tree: Tree, unscaled: Tree) -> PartClearance | None:
     at = {part_name(joint): frames[joint.parent] for joint, _, _ in mounted}
     links = SolidBodies.of_tree(tree).hulls
     placed = own.placed(at).beside(links.placed(frames))
-    joints = tuple((each.name, each.kind, each.parent, each.child) for each in tree.joints)
-    places = _places(joints, placed.names, len(own.names))
+    places = _places(unscaled, placed.names, len(own.names))
     found = [*_thickness(tree, mounted), *_held(placed, unscaled), *placed.overlapping(places)]
     lacking = sum(max(0.0, -gap.distance) for gap in found)
     if lacking == 0.0 and len(places):
@@ -108,35 +106,13 @@ def _mounted(tree: Tree) -> Iterator[Mounted]:
             yield joint, actuator, mounted_solid(actuator, joint.parent_from_child, joint.axis)
 
 
-@lru_cache(maxsize=16)
-def _places(joints: Chain, names: tuple[str, ...], count: int) -> Places:
-    """Which solids keep clear of each other: the same for all designs of a problem.
-
-    Args:
-        joints: name, kind, parent and child of each of the tree.
-        names: of the solids, the actuators' first.
-        count: how many are actuators.
-    """
-    parents = {f"{PART}{name}": parent for name, _, parent, _ in joints}
-    above = {child: (parent, kind is not JointKind.FIXED) for _, kind, parent, child in joints}
-    own, links = names[:count], tuple(dict.fromkeys(names[count:]))
-    far = {
-        (one, link) for one in {*parents.values()} for link in links if _moving_between(above, one, link) > 1
-    }
-    beside = ((one, link) for one in own for link in links if (parents[one], link) in far)
+@once_per_tree
+def _places(unscaled: Tree, names: tuple[str, ...], count: int) -> Places:
+    """Which solids keep clear of each other, of which so many, the first by name, are actuators."""
+    parents = {part_name(joint): joint.parent for joint in unscaled.joints}
+    own, links = names[:count], dict.fromkeys(names[count:])
+    beside = ((one, link) for one in own for link in links if not is_joined(unscaled, (parents[one], link)))
     return places_of(names, [*combinations(own, 2), *beside])
-
-
-def _moving_between(above: Mapping[str, tuple[str, bool]], one: str, other: str) -> int:
-    """How many joints that move are between two links."""
-    chains = []
-    for link in (one, other):
-        chain = []
-        while link in above:
-            chain.append(link)
-            link, _ = above[link]
-        chains.append({*chain})
-    return sum(above[child][1] for child in chains[0] ^ chains[1])
 
 
 def _held(placed: PlacedSolids, unscaled: Tree) -> Iterator[BodyDistance]:

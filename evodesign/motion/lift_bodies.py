@@ -134,13 +134,7 @@ class PartedLift:
         symbols: Array,
         chosen: Callable[[Meetings, Sequence[Array], Array], Chosen],
     ) -> LiftStart | None:
-        """A start with directions that are chosen at knots and half-way between; None where none are new.
-
-        Args:
-            start: with the directions until now.
-            symbols: of the motion.
-            chosen: new numbers by meeting, from the meetings, their functions' arguments and numbers now.
-        """
+        """A start with directions that are chosen at knots and half-way between; None where none are new."""
         parted = self._parted
         if not start.parts_bodies:
             start = replace(start, directions=parted.no_directions)

@@ -181,9 +181,6 @@ def _connect(scheduler: str) -> Client:
 
     A client that finds none waits for it as it is closed, and again when it is collected; so a probe, in a
     thread whose loop is its own, comes first.
-
-    Raises:
-        NoSchedulerError: none does.
     """
     with ThreadPoolExecutor(1) as thread:
         error = thread.submit(asyncio.run, _probe(scheduler)).exception()

@@ -169,12 +169,7 @@ class Parted:
         return np.concatenate([held[each.name].reshape(-1, NUMBERS) for each in self._bodies])
 
     def _named(self, held: Array, found: Mapping[int, Array]) -> Start:
-        """The parameters with new numbers for some meetings; without those of bodies for which none are new.
-
-        Args:
-            held: numbers of each meeting.
-            found: new ones, by place.
-        """
+        """The parameters with new numbers for some meetings, without those of bodies that have none."""
         named: dict[str, Array] = {}
         for place, new in found.items():
             body = int(np.searchsorted(self._ends, place, side="right")) - 1

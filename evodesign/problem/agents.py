@@ -187,11 +187,7 @@ def _human(key: str, table: HumanTable, source: ProblemSource) -> Agent:
 
 
 def _gaze(key: str, cone: float, person: Agent, source: ProblemSource) -> Gaze:
-    """From the middle of the head.
-
-    Raises:
-        InputError: a person from a URDF has no link of that name.
-    """
+    """From the middle of the head."""
     head = person.tree.link_by_name.get(HEAD)
     if head is None:
         wanted = f"a person with a link '{HEAD}' that looks along its x, as the generated one has"

@@ -104,11 +104,7 @@ def _cache() -> Cache | None:
 
 
 def _simplified(content: bytes, kind: str, most: int) -> Surface:
-    """The surface in a file's bytes.
-
-    Raises:
-        ValueError: it is no mesh; says why.
-    """
+    """The surface in a file's bytes."""
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")  # what libraries say about odd geometry
         mesh = _loaded(content, kind)
@@ -122,11 +118,7 @@ def _simplified(content: bytes, kind: str, most: int) -> Surface:
 
 
 def _loaded(content: bytes, kind: str) -> Any:
-    """The parts of a file as one mesh of trimesh, equal vertices merged [m].
-
-    Raises:
-        ValueError: the libraries cannot read it.
-    """
+    """The parts of a file as one mesh of trimesh, equal vertices merged [m]."""
     import trimesh  # here: what is kept needs neither, and commands start without
     from collada.common import DaeError
     from trimesh.exchange.stl import HeaderError

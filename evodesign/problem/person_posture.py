@@ -57,12 +57,7 @@ def is_measured(table: HumanTable) -> bool:
 
 
 def _measured(key: str, table: HumanTable, person: Agent, source: ProblemSource) -> Agent:
-    """The person, drawn to measured postures.
-
-    Raises:
-        InputError: lumbar joints that are not to bend as one, a sample that is to have samples, or a person
-            from a URDF without the links and joints that postures were measured of.
-    """
+    """The person, drawn to measured postures."""
     if table.spread is not None and table.posture_sample is not None:
         wanted = "either how many people to draw, or spread left out: this one is drawn already"
         raise InputError(
@@ -93,11 +88,7 @@ def _stature(person: Agent) -> float:
 
 
 def _coupled(key: str, ranges: JointRanges, person: Agent, source: ProblemSource) -> Agent:
-    """The person with the published ranges that its joints share, or the movements that they make together.
-
-    Raises:
-        InputError: a person from a URDF lacks one of the joints, or some of a rhythm's are held.
-    """
+    """The person with the published ranges that its joints share, or movements that they make together."""
     shared, found = coupled_joints(), f"'{ranges}' of '{person.tree.name}'"
     for name in (name for each in shared for name in each.joints):
         if name not in person.tree.joint_by_name:

@@ -90,11 +90,7 @@ def _averaged_scenes(scenes: Sequence[Scene]) -> tuple[tuple[Scene, ...], tuple[
 
 
 def _symmetric_agent(agent: Agent) -> tuple[Agent, str]:
-    """The agent if it is symmetric, or the mean of it and its mirror image and a note on what differed.
-
-    Raises:
-        ModelError: the two sides differ by more than the tolerance.
-    """
+    """The agent if it is symmetric, or the mean of it and its mirror image and a note on what differed."""
     try:
         half(agent)
     except ModelError:

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from evodesign.body.placement import Placement, Vector, rotate
 from evodesign.body.shape import Box, Cylinder, Shape
 from evodesign.errors import RunError, on_one_line
-from evodesign.mechanics.agent import ROBOT, Agent, Role
+from evodesign.mechanics.agent import HUMAN, ROBOT, Agent, Role
 from evodesign.mechanics.payload import Payload
 from evodesign.mechanics.scene import Scene
 from evodesign.records import AgentDetail, CaseDetail, Task
@@ -70,6 +70,10 @@ class SceneModels:
     def agent(self, name: str) -> Agent:
         """The agent of a name."""
         return next(agent for agent in self.agents if agent.name == name)
+
+    def kind(self, name: str) -> str:
+        """What has a name: `ROBOT`, `HUMAN` or `LOAD`."""
+        return LOAD if name == LOAD else ROBOT if self.agent(name).role is Role.ROBOT else HUMAN
 
 
 @dataclass(frozen=True, slots=True)

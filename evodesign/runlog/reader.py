@@ -1,7 +1,7 @@
-"""Reading one segment of a run's log, whole, cut off or damaged anywhere.
+"""Reading one segment of a run's log, whole, cut off or damaged.
 
-A segment whose session was killed has neither index nor footer, and its last chunk may be half there. What is
-sound is read, also after a damaged part; what is not is said.
+A segment whose session was killed has neither index nor footer, and its last chunk may be half there. What
+cannot be read is said.
 """
 
 from __future__ import annotations
@@ -199,7 +199,7 @@ def _note(path: Path, found: Scan, believer: Believer, evaluations: int, *, head
         other = "has just begun" if last else "what it wrote is lost"
         return f"{path.name} is empty: its session was killed before it wrote, or {other}"
     if found.damage:
-        places = [f"{gap.end - gap.start} bytes at {gap.start}" for gap in found.damage[:MOST_LISTED]]
+        places = [f"{len(gap)} bytes at {gap.start}" for gap in found.damage[:MOST_LISTED]]
         further = len(found.damage) - len(places)
         more = f" and at {further} more places" if further else ""
         return (

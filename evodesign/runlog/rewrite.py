@@ -92,11 +92,7 @@ def _undamaged(directory: Path) -> RunLog:
 
 
 def _write(path: Path, header: RunHeader, records: Iterable[Entry], part: str = "") -> None:
-    """Records, with those of headers first, as one segment that is on the disk when this returns.
-
-    Raises:
-        RunError: the file cannot be written.
-    """
+    """Records, with those of headers first, as one segment that is on the disk when this returns."""
     try:
         with replacing(path, part) as file:
             writer = Writer(

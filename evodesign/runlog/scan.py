@@ -1,13 +1,13 @@
-"""Finding everything sound in the file of a segment, whole, cut off or damaged anywhere.
+"""Finding everything sound in the file of a segment, whole, cut off or damaged.
 
 A segment is an MCAP file: a header, then chunks (each with a checksum), their indexes and attachments (each
-with a checksum), then a checksum of all that, then an index of the whole. Records are walked from the front.
-Where one is damaged, the walk goes on at the next chunk whose checksum is right, and the bytes between are a
-gap: nothing that is given back is guessed.
+with a checksum), then a checksum of all that, then an index of the whole. Records are walked from the front,
+each by its length. One whose checksum is wrong is left out; where lengths lead to no record, reading ends.
+The bytes that are left out are gaps: nothing that is given back is guessed.
 
 A right checksum makes nothing true: whoever changes a file can write it. What a record declares is compared
-with the file and with what any sound record has before it is read or unpacked, and the work on what turns out
-to be none is bounded, so that reading ends in time and memory that the size of the file bounds.
+with the file and with what any sound record has before it is read or unpacked, so that reading ends in time
+and memory that the size of the file bounds.
 
 Source: the MCAP specification, version 0 (mcap.dev/spec); the written files are checked with its own reader.
 """
@@ -16,8 +16,7 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
 from typing import Final
 
 import msgspec
@@ -38,19 +37,11 @@ COPY_MARK: Final = struct.pack("<I", len(HEADER_COPY)) + HEADER_COPY.encode()
 ATTACHMENT_NAME_AT: Final = 16
 MESSAGE_START: Final = struct.Struct("<HIQQ")
 FOOTER_BODY: Final = struct.Struct("<QQI")
-INDEX_START: Final = struct.Struct("<HI")
-INDEX_ENTRY: Final = 16
 CHANNEL_START: Final = struct.Struct("<HHI")
-
-MARK_AT: Final = {
-    CHUNK_MARK: (CHUNK, PREFIX.size + 28),
-    COPY_MARK: (ATTACHMENT, PREFIX.size + ATTACHMENT_NAME_AT),
-}
-"""By what a record is found after damage: its kind, and where in it the mark stands."""
 
 MOST_RATIO: Final = 64
 MOST_WORK: Final = 64 * 2**20
-"""Bytes unpacked, and bytes tried in vain, are at most so many times the file's, and so many more."""
+"""Bytes unpacked are at most so many times the file's, and so many more."""
 
 
 class Message(msgspec.Struct, frozen=True):
@@ -74,14 +65,6 @@ class Chunk(msgspec.Struct, frozen=True):
     messages: tuple[Message, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Gap:
-    """Bytes from start to end (not included) that cannot be read."""
-
-    start: int
-    end: int
-
-
 class Scan:
     """A walk through a segment; what it found out about the file is whole when the chunks have been taken.
 
@@ -89,7 +72,7 @@ class Scan:
         file: of the segment.
     Attributes:
         size: of the file, in bytes.
-        gaps: what cannot be read, in the order of the file.
+        gaps: places of the bytes that cannot be read, in the order of the file.
         ended: whether the file has its last bytes: no process was killed while it wrote.
         sound: whether the file is as it was written, to its last byte.
         header_copy: the header's JSON from the first sound attachment that repeats it; empty without one.
@@ -98,7 +81,7 @@ class Scan:
     def __init__(self, file: SegmentFile) -> None:
         self._file = file
         self.size = file.size
-        self.gaps: list[Gap] = []
+        self.gaps: list[range] = []
         self.ended = file.size > len(MAGIC) and file.read(file.size - len(MAGIC), len(MAGIC)) == MAGIC
         self.sound = False
         self.header_copy = b""
@@ -106,10 +89,10 @@ class Scan:
         self._unpacker = Unpacker(file.size)
 
     @property
-    def damage(self) -> tuple[Gap, ...]:
+    def damage(self) -> tuple[range, ...]:
         """Gaps that no kill explains: all but one at the end of a file that lacks its last bytes."""
         killed = not self.ended and not self._forged
-        return tuple(gap for gap in self.gaps if not killed or gap.end < self.size)
+        return tuple(gap for gap in self.gaps if not killed or gap.stop < self.size)
 
     def chunks(self) -> Iterator[Chunk]:
         """Every sound chunk, in the order of the file.
@@ -117,64 +100,29 @@ class Scan:
         Raises:
             OSError: the file cannot be read.
         """
-        place = self._after_header()
-        unindexed: float = 0
+        place = len(MAGIC)
+        if self._file.read(0, place) != MAGIC:
+            self.gaps.append(range(min(place, self.size)))
         while place < self.size and not self._unpacker.exhausted:
-            kind, end, body = self._file.record(place) or (0, place, b"")
+            kind, end, body = self._file.record(place) or (0, self.size, b"")
             if kind == DATA_END and len(body) == 4:
                 self.sound = not self.gaps and self._whole(place, end, body)
                 return
+            known = kind in (HEADER, MESSAGE_INDEX)
             if kind == CHUNK and (records := self._unpacker.records(body)) is not None:
-                if (chunk := chunk_of(records)) is not None:
-                    unindexed = len(chunk.messages)
+                known = (chunk := chunk_of(records)) is not None
+                self._forged |= not known
+                if chunk is not None:
                     yield chunk
-                else:
-                    self._forged = True
-                    self.gaps.append(Gap(place, end))
             elif kind == ATTACHMENT and (copy := attached_header(body)) is not None:
-                self.header_copy = self.header_copy or copy
-            elif kind == MESSAGE_INDEX and (indexed := _indexed(body)) <= unindexed:
-                unindexed -= indexed
-            else:
-                self._unpacker.spend(len(body))
-                end = self._next_sound(place + 1)
-                self.gaps.append(Gap(place, end))
+                known, self.header_copy = True, self.header_copy or copy
+            end = end if kind else self.size  # no record is of kind 0
+            if not known:
+                self.gaps.append(range(place, end))
             place = end
         if place < self.size:
             self._forged = True
-            self.gaps.append(Gap(place, self.size))
-
-    def _after_header(self) -> int:
-        """Where the first sound record after the file's header begins."""
-        if self._file.read(0, len(MAGIC)) == MAGIC and self.size > len(MAGIC):
-            kind, end, body = self._file.record(len(MAGIC)) or (0, 0, b"")
-            if kind == HEADER and body:
-                return end
-        place = self._next_sound(0)
-        self.gaps.append(Gap(0, place))
-        return place
-
-    def _next_sound(self, place: int) -> int:
-        """Where the next sound chunk or copy of the header begins, from a place on; the end if none does."""
-        for found, mark in self._file.occurrences(tuple(MARK_AT), place):
-            kind, mark_at = MARK_AT[mark]
-            start = found - mark_at
-            if start >= place and self._file.read(start, 1)[0] == kind and self._sound_at(start, kind):
-                return start
-            if self._unpacker.exhausted:
-                break
-        return self.size
-
-    def _sound_at(self, place: int, kind: int) -> bool:
-        """Whether a record of a kind, of which a mark was found, is sound."""
-        start = self._file.read(place, PREFIX.size + CHUNK_START.size + FRAME_HEADER)
-        _, length = PREFIX.unpack_from(start)
-        if kind == CHUNK and _declared(start[PREFIX.size :], length) is None:
-            return False
-        _, _, body = self._file.record(place) or (0, 0, b"")
-        read: Callable[[bytes], bytes | None] = self._unpacker.records if kind == CHUNK else attached_header
-        self._unpacker.spend(len(body))
-        return read(body) is not None
+            self.gaps.append(range(place, self.size))
 
     def _whole(self, data_end: int, summary: int, checksum: bytes) -> bool:
         """Whether the checksums of the data and of the index after it are right, and nothing follows."""
@@ -207,10 +155,6 @@ class Unpacker:
     def exhausted(self) -> bool:
         """Whether more was unpacked than any sound file of this size holds."""
         return self._left < 0
-
-    def spend(self, work: int) -> None:
-        """Count bytes that were read or unpacked."""
-        self._left -= work
 
     def records(self, body: bytes) -> bytes | None:
         """The uncompressed records of a chunk; None unless sizes and checksum are right."""
@@ -287,12 +231,3 @@ def attached_header(body: bytes) -> bytes | None:
         return zstandard.ZstdDecompressor().decompress(data)
     except (zstandard.ZstdError, MemoryError):
         return b""
-
-
-def _indexed(body: bytes) -> int:
-    """How many messages a message index has; more than any if the body has not its shape."""
-    if len(body) < INDEX_START.size:
-        return LARGEST_CHUNK
-    _, length = INDEX_START.unpack_from(body)
-    entries, rest = divmod(length, INDEX_ENTRY)
-    return int(entries) if not rest and length == len(body) - INDEX_START.size else LARGEST_CHUNK

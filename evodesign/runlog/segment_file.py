@@ -7,7 +7,6 @@ it was opened; nothing longer than `LARGEST_CHUNK` is ever held at once.
 
 from __future__ import annotations
 
-import errno
 import os
 import stat
 import struct
@@ -26,8 +25,7 @@ LARGEST_CHUNK: Final = 2 * LARGEST_RECORD
 """Longest chunk [byte] that is read or unpacked: a record, and what is written together with it."""
 
 WINDOW: Final = 2**20
-FIRST_WINDOW: Final = 2**12
-"""Bytes that are read at once, and first where something is looked for."""
+"""Bytes that are read at once."""
 
 PREFIX: Final = struct.Struct("<BQ")
 """Before each record of an MCAP file: its kind and its length."""
@@ -118,35 +116,9 @@ class SegmentFile:
         self._start, self._window = place, self.read(place, max(least, WINDOW))
         return len(self._window) >= least
 
-    def occurrences(self, marks: tuple[bytes, ...], place: int) -> Iterator[tuple[int, bytes]]:
-        """Where one of the marks stands, from a place on, in order; holes of a sparse file are skipped."""
-        overlap = max(map(len, marks)) - 1
-        width = FIRST_WINDOW
-        while (place := max(place, self._data_from(place) - overlap)) < self.size:
-            part = self.read(place, width + overlap)
-            found = ((at, mark) for mark in marks for at in _all_places(part, mark) if at < width)
-            for at, mark in sorted(found):
-                yield place + at, mark
-            place += width
-            width = min(4 * width, WINDOW)
-
-    def _data_from(self, place: int) -> int:
-        """Where data stands from a place on: what no disk holds is zero."""
-        try:
-            return os.lseek(self._descriptor, place, os.SEEK_DATA)
-        except OSError as error:
-            return self.size + WINDOW if error.errno == errno.ENXIO else place
-
     def checksum(self, start: int, end: int) -> int:
         """CRC-32 of the bytes from start to end (not included)."""
         found = 0
         for place in range(start, end, WINDOW):
             found = zlib.crc32(self.read(place, min(WINDOW, end - place)), found)
         return found
-
-
-def _all_places(part: bytes, mark: bytes) -> Iterator[int]:
-    at = part.find(mark)
-    while at >= 0:
-        yield at
-        at = part.find(mark, at + 1)

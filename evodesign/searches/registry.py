@@ -61,11 +61,7 @@ def make_asynchronous_search(settings: SearchSettings) -> AsynchronousSearch:
 
 
 def _class(algorithm: str, searches: Mapping[str, str]) -> Any:
-    """The class of an algorithm: that of a line, or at a place such as `package.module:Class`.
-
-    Raises:
-        InputError: there is nothing at the place, or the user has not named its module.
-    """
+    """The class of an algorithm: that of a line, or at a place such as `package.module:Class`."""
     if algorithm in searches:
         return pkgutil.resolve_name(searches[algorithm])
     return imported(algorithm, "search", "algorithm")

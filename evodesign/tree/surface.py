@@ -104,11 +104,7 @@ def read_surface(text: str, source: str, key: str) -> Surface:
 
 
 def _numbers(text: str) -> NDArray[np.uint16]:
-    """Triples of 16-bit numbers.
-
-    Raises:
-        ValueError: the text is not base64, or of another length.
-    """
+    """Triples of 16-bit numbers."""
     return np.frombuffer(base64.b64decode(text, validate=True), dtype="<u2").reshape(-1, 3)
 
 

@@ -1,7 +1,6 @@
-"""What joints and links are called in tables and figures: `jL5S1_roty` is the lower back, bending forward.
+"""What a person's joints and links are called in tables and figures: `jL5S1_roty` bends the lower back.
 
-Joints of the generated person have names of their own (`human.body`); of any other name the parts are words,
-and a part `l` or `r` is a side.
+These names are the generated person's (`human.body`). A robot's joints keep the names of its URDF.
 """
 
 from __future__ import annotations
@@ -41,14 +40,15 @@ LINKS: Mapping[str, str] = {
     "ForeArm": "forearm",
 }
 
-SIDES: Mapping[str, str] = {"l": "left", "r": "right"}
-
 PERSONS_JOINT = re.compile(r"j(Left|Right)?(\w+?)_rot([xyz])")
-PERSONS_LINK = re.compile(r"(Left|Right)?(Pelvis|L5|L3|T12|T8|Neck|Head|[A-Z]\w*?)(?:_f\d)?")
+PERSONS_LINK = re.compile(
+    "(Left|Right)?(Pelvis|L5|L3|T12|T8|Neck|Head|Shoulder|UpperArm|ForeArm|Hand|Palm|UpperLeg|LowerLeg|Foot|Sole|Toe)"
+    r"(?:_f\d)?"
+)
 
 
 def in_words(name: str) -> str:
-    """What a joint or a link of this name is called."""
+    """What a joint or a link of this name is called; any that is not the person's by its name."""
     joint = PERSONS_JOINT.fullmatch(name)
     if joint and joint[2] in PLACES:
         place, moves = PLACES[joint[2]]
@@ -57,7 +57,7 @@ def in_words(name: str) -> str:
     if link:
         part = LINKS.get(link[2]) or re.sub(r"(?<=[a-z])(?=[A-Z])", " ", link[2]).lower()
         return f"{(link[1] or '').lower()} {part}".strip()
-    return " ".join(SIDES.get(part, part) for part in name.split("_") if part)
+    return name
 
 
 def words_of(tree: Tree) -> dict[str, str]:

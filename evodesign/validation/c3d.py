@@ -125,11 +125,7 @@ class _Axes:
 
 
 def _axes(tracks: Tracks, given: PointsFile, source: str) -> _Axes:
-    """Up and forward, as the user says or as the person stands.
-
-    Raises:
-        InputError: a direction that is not told and cannot be found, or two that are not perpendicular.
-    """
+    """Up and forward, as the user says or as the person stands."""
     up = _up(tracks, source) if given.up is None else given.up.vector
     if given.forward is not None:
         forward = given.forward.vector
@@ -181,12 +177,7 @@ class _Ground:
 def _ground(
     content: C3dContent, given: PointsFile, unit: LengthUnit, axes: _Axes, source: str
 ) -> _Ground | None:
-    """What the plates under the feet tell; None where there is none.
-
-    Raises:
-        InputError: a plate that is not there or cannot be read, forces that are not in newtons, moments whose
-            unit of length is not that of places, or a centre of pressure far outside of its plate.
-    """
+    """What the plates under the feet tell; None where there is none."""
     every = (*range(1, content.used + 1),)
     numbers = every if given.plates is None else (*dict.fromkeys(given.plates),)
     if not numbers:

@@ -228,9 +228,9 @@ def opened(repository: Path, known: Precomputed) -> Problem:
     return Problem(msgspec.structs.replace(source, text=f"{source.text}\n[solver]\ncompile = false\n"))
 
 
-@pytest.mark.parametrize("name", SOUND)
-def test_results_on_a_robot_are_what_its_evaluation_gives(opened: Problem, name: str) -> None:
-    result = as_pymoo_problem(opened).minimize(SOUND[name](6), ("n_gen", 2), seed=1)
+def test_results_on_a_robot_are_what_its_evaluation_gives(opened: Problem) -> None:
+    """Of one algorithm; the others are compared on the toy problem."""
+    result = as_pymoo_problem(opened).minimize(SOUND["NSGA2"](6), ("n_gen", 2), seed=1)
     assert np.isfinite(result.F).all()
     for row, values in zip(np.atleast_2d(result.X), result.problem.natural(result.F), strict=True):
         design = opened.evaluate(row.tolist())

@@ -21,14 +21,13 @@ TWENTY_THOUSAND_PARTS = "a" + ".a" * 19_999 + " = 1\n"
     ("more", "words"),
     [
         (TWENTY_THOUSAND_PARTS, [PROBLEM, "line 1", "at most 10000 letters", "found 40003"]),
-        (TWENTY_THOUSAND_PARTS * 2, [PROBLEM, "line 1", "at most 10000 letters"]),
         ("a" + ".a" * 4_000 + " = 1\n", [PROBLEM, "a key of at most 16 dotted parts, found 4001"]),
         ("[" + "a . 'b' ." * 500 + " a]\n", [PROBLEM, "a key of at most 16 dotted parts, found 1001"]),
         ("".join(f"k{i}.b = 1\n" for i in range(70_000)), [PROBLEM, "k0", "one of the keys"]),
         ("".join(f"k{i}=1\n" for i in range(200_000)), [PROBLEM, "at most 1000000 letters"]),
         ("x = " + "[" * 4_000 + "]" * 4_000 + "\n", [PROBLEM, "valid TOML"]),
     ],
-    ids=["20,000 parts", "two such", "4,000 parts", "a header", "70,000 keys", "1 MB", "nested arrays"],
+    ids=["20,000 parts", "4,000 parts", "a header", "70,000 keys", "1 MB", "nested arrays"],
 )
 def test_a_hostile_problem_is_refused_within_bounds(more: str, words: list[str], place: Path) -> None:
     problem = place / PROBLEM

@@ -245,17 +245,30 @@ ASSESSES = ("resume with more", "polish")
 """Commands that cannot do without the search, and without the problem's objectives."""
 
 
-@pytest.mark.parametrize(("make", "refusing"), [(own_search, SEARCHES), (own_objective, ASSESSES)])
-@pytest.mark.parametrize("others", [False, pytest.param(True, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    ("make", "refusing", "others"),
+    [
+        (own_search, SEARCHES, ("show", "polish")),
+        (own_objective, ASSESSES, ("show", "resume", "verify", "branch")),
+    ],
+)
 def test_code_that_a_received_run_names_is_not_executed(
-    others: bool, make: Callable[..., Any], refusing: tuple[str, ...], work: Path
+    make: Callable[..., Any], refusing: tuple[str, ...], others: tuple[str, ...], work: Path
 ) -> None:
     received_run(work, make(work))
-    quick = ("show", *refusing)
-    found = outcomes(work, tuple(name for name in COMMANDS if name not in quick) if others else quick)
-    codes = {name: code for name, (code, _, _) in found.items() if name in refusing}
-    assert codes == ({} if others else dict.fromkeys(refusing, 2))
-    assert all("EVODESIGN_MODULES=canary" in found[name][2] for name in codes)
+    found = outcomes(work, (*others, *refusing))
+    assert {name: found[name][0] for name in refusing} == dict.fromkeys(refusing, 2)
+    assert all("EVODESIGN_MODULES=canary" in found[name][2] for name in refusing)
+
+
+@pytest.mark.slow
+def test_commands_that_need_neither_search_nor_objectives_execute_none(work: Path) -> None:
+    def both(header: Header) -> None:
+        own_search(work)(header)
+        own_objective(work)(header)
+
+    received_run(work, both)
+    outcomes(work, tuple(name for name in COMMANDS if name not in ("show", *SEARCHES, *ASSESSES)))
 
 
 def test_code_that_the_user_names_is_executed(work: Path) -> None:

@@ -105,28 +105,17 @@ def worst_errors(problem: DesignProblem, known: Precomputed, genomes: list[Genom
 
 
 @pytest.mark.slow
-def test_gradients_of_what_people_bear_agree_with_differences(
+def test_gradients_agree_with_differences_through_the_pool(
     problem: DesignProblem, known: Precomputed
 ) -> None:
     names = ("human_load_torque", "back_compression", "worst_back_compression", "endurance_s")
     asked = tuple(Objective(name=name, sense=Sense.MINIMISE, unit="") for name in names)
-    errors = worst_errors(
-        replace(problem, objectives=asked), known, drawn(6, len(problem.space.parameters), 6)
-    )
-    for name in names:
-        compared = [error[name] for error in errors if name in error]
-        assert len(compared) >= 2
-        assert max(compared) < 1e-5
-
-
-@pytest.mark.slow
-def test_gradients_agree_with_differences_through_the_pool(
-    problem: DesignProblem, known: Precomputed
-) -> None:
-    errors = worst_errors(problem, known, drawn(14, len(problem.space.parameters), 2))
+    more = replace(problem, objectives=(*problem.objectives, *asked))
+    errors = worst_errors(more, known, drawn(9, len(problem.space.parameters), 2))
     compared = [error for each in errors for error in each.values()]
-    assert len(compared) >= 100
+    assert len(compared) >= 80
     assert max(compared) < 1e-5
+    assert min(sum(name in error for error in errors) for name in names) >= 2
 
 
 @pytest.mark.slow
@@ -172,9 +161,9 @@ def test_a_run_holds_gradients_and_is_resumed_and_replayed_with_them(
     assert settings.with_gradients
     factory = AssessmentFactory("run", problem, known, gradients=True)
     with SerialPool() as pool:
-        whole = start(tmp_path / "whole", header_of(problem, settings, 32), factory, pool, Silent())
-        start(tmp_path / "parts", header_of(problem, settings, 28), factory, pool, Silent())
-        parts = resume(tmp_path / "parts", lambda _: factory, pool, Silent(), 32)
+        whole = start(tmp_path / "whole", header_of(problem, settings, 24), factory, pool, Silent())
+        start(tmp_path / "parts", header_of(problem, settings, 20), factory, pool, Silent())
+        parts = resume(tmp_path / "parts", lambda _: factory, pool, Silent(), 24)
     assert digest(parts.evaluations) == digest(whole.evaluations)
     replay(whole)
     for evaluation in read_run(tmp_path / "whole").evaluations:

@@ -257,11 +257,6 @@ def test_a_lift_under_a_disturbance_is_a_case_of_its_own(pushed: Moving) -> None
 
 
 @pytest.mark.slow
-def test_gradients_under_a_disturbance_are_those_of_differences_along_the_tangent(pushed: Moving) -> None:
-    assert_gradients_agree(pushed)
-
-
-@pytest.mark.slow
 def test_a_height_out_of_reach_is_missed_by_a_lift_as_by_a_hold(repository: Path) -> None:
     high = Moving.of(changed(repository, (TABLE, "from_m = 0.9\nto_m = 2.5")))
     (case,) = high.result.cases
@@ -371,16 +366,12 @@ def test_what_is_for_loads_held_still_is_refused(repository: Path) -> None:
 
 
 @pytest.mark.slow
-def test_gradients_of_every_objective_are_those_of_differences_along_the_tangent(moving: Moving) -> None:
-    assert_gradients_agree(moving)
-
-
-def assert_gradients_agree(moving: Moving) -> None:
+def test_gradients_under_a_disturbance_are_those_of_differences_along_the_tangent(pushed: Moving) -> None:
     """The quick chain rule over instants against whole tangents; tests/motion has those of the motion."""
-    derivatives = Sensitivities(moving.problem, inner=moving.solver.inner)
-    slow = derivatives.at(moving.values, moving.result).sensitivities()
-    quick = assessed_gradients(moving.problem, derivatives, moving.values, moving.result).values
-    spans = {p.name: p.slope_at(x) for p, x in zip(moving.problem.space.records, moving.values, strict=True)}
+    derivatives = Sensitivities(pushed.problem, inner=pushed.solver.inner)
+    slow = derivatives.at(pushed.values, pushed.result).sensitivities()
+    quick = assessed_gradients(pushed.problem, derivatives, pushed.values, pushed.result).values
+    spans = {p.name: p.slope_at(x) for p, x in zip(pushed.problem.space.records, pushed.values, strict=True)}
     for name in ("robot_torque", "worst_robot_torque", "energy", "worst_robot_power"):
         gradient = slow[name].gradient
         assert gradient is not None, slow[name].notes

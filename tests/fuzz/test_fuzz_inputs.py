@@ -28,7 +28,7 @@ from tests.fuzz.input_cases import (
 from tests.fuzz.limits import Hanging, time_limit
 from tests.rewriting import write_anew
 
-CASES, QUICK_CASES = 2000, 400
+CASES, QUICK_CASES = 1000, 300
 
 
 @pytest.fixture

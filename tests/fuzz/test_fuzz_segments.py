@@ -15,7 +15,7 @@ from evodesign.runlog.run import RunLog, read_run
 from tests.fuzz.segment_cases import Message, examine, messages_of, sound_run, spoilt
 from tests.runlog import crafted
 
-QUICK_CASES, CASES, PARTS = 100, 1_500, 4
+QUICK_CASES, CASES, PARTS = 100, 700, 2
 LATER = (FORMAT_VERSION + 1, 1000)
 CORPUS = sorted((Path(__file__).parent / "corpus/segments").iterdir())
 

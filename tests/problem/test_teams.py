@@ -167,7 +167,7 @@ def test_nobody_touches_anybody_of_a_team_that_was_made_ready() -> None:
     """Coal measures all bodies of different agents."""
     tables = tomllib.loads((SHIPPED / "table_top.toml").read_text(encoding="utf-8"))
     tables["task"]["heights_m"], tables["design"]["length"] = [1.0], tables["design"]["length"][:1]
-    problem = build_problem(source_of(tables))
+    problem = built({**tables, "solver": IPOPT})
     with JoblibPool(1) as pool:
         known = cached_precomputed(problem, pool)
     result = Evaluator(problem, known).solve(problem.space.unscaled(problem.scene.robot.tree))

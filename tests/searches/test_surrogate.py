@@ -1,6 +1,7 @@
 """The parts of the surrogate search against closed forms."""
 
 import hashlib
+import math
 import os
 import subprocess
 import sys
@@ -286,6 +287,23 @@ def test_what_lies_beyond_a_given_reference_is_left_alone():
     limited = settings(reference=(0.15, None))
     late = [np.array(searched(make_search(each), 12, sloped))[-32:, 0] for each in (limited, settings())]
     assert (late[0] < 0.2).mean() > (late[1] < 0.2).mean()
+
+
+def test_ends_are_found_that_lie_beyond_the_reference_of_the_first_designs():
+    """The end of the first objective is far worse in the second than nine in ten of the first designs."""
+
+    def steep(genome):
+        point = np.array(genome)
+        first, second = point.mean(), math.exp(12.0 * (0.5 - point.mean())) + ((point - 0.5) ** 2).sum()
+        slope = -2.0 * math.exp(12.0 * (0.5 - point.mean()))
+        return Outcome((first, second), 0.0, gradients=((1 / 6,) * 6, tuple(slope + 2.0 * (point - 0.5))))
+
+    least = [
+        np.array(searched(make_search(settings(reference=given)), 12, steep))[:, 0].min()
+        for given in ((None, None), (None, 30.0))
+    ]
+    assert least[0] < 0.02, "no genome has less than 0"
+    assert least[1] > 0.15, "where a reference is given, 0.5 - ln(30) / 12 = 0.22 is the end"
 
 
 def test_a_model_of_many_designs_is_made_of_a_thousand():

@@ -5,11 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from rich.markup import escape
-
-from evodesign.cli.output import rounded
+from evodesign.cli.output import printable, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
-from evodesign.errors import on_one_line
 
 
 def mass_title(bill: Mapping[str, Any]) -> str:
@@ -39,7 +36,7 @@ def actuators_table(bill: Mapping[str, Any], title: str = "") -> FittedTable:
         *numbers("joints", "rated [N m]", "peak [N m]", "kg each", "used"),
         *names("most by", "joint"),
     ]
-    table = titled(title, columns, caption=escape(on_one_line(clearance_in_words(bill))))
+    table = titled(title, columns, caption=printable(clearance_in_words(bill)))
     groups: dict[str, dict[str, Mapping[str, Any]]] = {}
     for joint, row in bill["joints"].items():
         groups.setdefault(row["actuator"], {})[joint] = row
@@ -48,13 +45,13 @@ def actuators_table(bill: Mapping[str, Any], title: str = "") -> FittedTable:
         row = rows[worst]
         model = f" ({row['model']})" if row["model"] else ""
         table.add_row(
-            escape(on_one_line(group + model)),
+            group + model,
             f"{len(rows)}",
-            rounded(row["rated_torque_n_m"]),
-            rounded(row["peak_torque_n_m"]),
-            rounded(row["mass_kg"]),
+            row["rated_torque_n_m"],
+            row["peak_torque_n_m"],
+            row["mass_kg"],
             f"{row['share']:.0%}",
-            escape(on_one_line(row["asked_by"])),
-            escape(on_one_line(worst)),
+            row["asked_by"],
+            worst,
         )
     return table

@@ -6,11 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Group, RenderableType
-from rich.markup import escape
 from rich.text import Text
 
 from evodesign.analysis.people_spread import PeopleSpread
-from evodesign.cli.output import heading, interval, rounded
+from evodesign.cli.output import heading, interval
 from evodesign.cli.tables.bill import actuators_table, mass_title
 from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.cli.tables.constraints import constraints_table, violation_heading
@@ -113,11 +112,9 @@ def _objectives(opened: OpenedDesign) -> FittedTable:
         found = [e.assessment.objectives.get(objective.name) for e in opened.run.evaluations if e.feasible]
         values = [value for value in found if value is not None]
         own = assessment.objectives.get(objective.name)
-        table.add_row(
-            escape(on_one_line(heading(objective))), rounded(own), rounded(best(values, default=None))
-        )
+        table.add_row(heading(objective), own, best(values, default=None))
     label = violation_heading(opened.run.header.constrained)
-    table.add_row(escape(label), rounded(assessment.violation), "")
+    table.add_row(label, assessment.violation, "")
     return table
 
 
@@ -141,21 +138,14 @@ def _parameters(opened: OpenedDesign) -> FittedTable:
         unit = "" if parameter.unit == "1" else parameter.unit
         bar = _bar(parameter, value)
         ends = (f"{parameter.lower:g}", f"{parameter.upper:g}")
-        table.add_row(
-            escape(on_one_line(parameter.name)),
-            rounded(value),
-            escape(on_one_line(unit)),
-            ends[0],
-            bar,
-            ends[1],
-        )
+        table.add_row(parameter.name, value, unit, ends[0], bar, ends[1])
     return table
 
 
 def _materials(made_of: Mapping[str, str]) -> FittedTable:
     table = titled("", names("parameter", "material"))
     for parameter, material in made_of.items():
-        table.add_row(escape(on_one_line(parameter)), escape(on_one_line(material)))
+        table.add_row(parameter, material)
     return table
 
 

@@ -4,11 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
-from rich.markup import escape
-
-from evodesign.cli.output import markup, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
-from evodesign.errors import on_one_line
 from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.records import Assessment, CaseOutcome, Lift, Status
 
@@ -37,17 +33,17 @@ def cases_table(assessment: Assessment, title: str) -> FittedTable:
     for outcome, following in zip(outcomes, (*outcomes[1:], None), strict=False):
         iterations = [] if labels else [str(outcome.iterations)]
         table.add_row(
-            *(markup(name_of(outcome)) for name_of in labels.values()),
-            _height(outcome) if labels or moves else rounded(outcome.case.task.heights[0]),
-            *(rounded(_undisturbed(outcome, role)) for role in roles),
+            *(name_of(outcome) for name_of in labels.values()),
+            _height(outcome) if labels or moves else outcome.case.task.heights[0],
+            *(_undisturbed(outcome, role) for role in roles),
             *iterations,
             _residual(outcome),
             _status(outcome),
         )
         for name, norms in outcome.disturbed.items():
-            own = [rounded(norms.get(role)) for role in roles]
+            own = [norms.get(role) for role in roles]
             blank = ["" for _ in iterations]
-            table.add_row(*("" for _ in labels), "", *own, *blank, "", markup(f"under '{name}'"))
+            table.add_row(*("" for _ in labels), "", *own, *blank, "", f"under '{name}'")
         if following is not None and outcome.case.pair != following.case.pair:
             table.add_section()
     return table
@@ -58,8 +54,7 @@ def _residual(outcome: CaseOutcome) -> str:
 
 
 def _status(outcome: CaseOutcome) -> str:
-    status = outcome.status if outcome.status == "solved" else f"{outcome.status}: {outcome.reason}"
-    return escape(on_one_line(status))
+    return outcome.status if outcome.status == "solved" else f"{outcome.status}: {outcome.reason}"
 
 
 def summary_table(assessment: Assessment, title: str) -> FittedTable:
@@ -91,7 +86,7 @@ def _add_summary(
         for number in _mean_and_worst([norm for outcome in solved for norm in _norms(outcome, role)])
     ]
     share = f"{len(solved)} of {len(outcomes)}"
-    table.add_row(markup(name), share, *map(rounded, measured), end_section=last)
+    table.add_row(name, share, *measured, end_section=last)
 
 
 def _roles(outcomes: Sequence[CaseOutcome]) -> list[str]:

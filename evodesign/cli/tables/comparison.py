@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from evodesign.analysis.comparison import Comparison, best_designs
 from evodesign.analysis.comparison_json import hypervolume_summary
-from evodesign.cli.output import heading, markup, rounded
+from evodesign.cli.output import heading
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 
 
@@ -51,9 +51,9 @@ def _searches(comparison: Comparison) -> FittedTable:
         summary = hypervolume_summary(members) or {}
         shares = [each.share for each in members if each.share is not None]
         table.add_row(
-            markup(name),
-            str(len(members)),
-            *(rounded(summary.get(key)) for key in ("median", "least", "greatest")),
+            name,
+            len(members),
+            *(summary.get(key) for key in ("median", "least", "greatest")),
             f"{statistics.median(shares):.1%}" if shares else "-",
         )
     return table
@@ -64,12 +64,12 @@ def _runs(comparison: Comparison) -> FittedTable:
     table = titled("Runs", [*names("run", "search"), *numbers("seed", "front", "hypervolume", *best)])
     for each in comparison.runs:
         table.add_row(
-            markup(each.run.directory.name),
-            markup(each.search),
-            str(each.run.header.search.seed),
-            str(len(each.front)),
-            rounded(each.hypervolume),
-            *(rounded(each.best.get(objective.name)) for objective in comparison.objectives),
+            each.run.directory.name,
+            each.search,
+            each.run.header.search.seed,
+            len(each.front),
+            each.hypervolume,
+            *(each.best.get(objective.name) for objective in comparison.objectives),
         )
     return table
 
@@ -81,11 +81,11 @@ def _tests(comparison: Comparison) -> FittedTable:
         if test.p is None:
             continue
         table.add_row(
-            markup(" / ".join(test.samples)),
+            " / ".join(test.samples),
             test.name,
-            rounded(test.p),
+            test.p,
             "-" if test.effect is None else f"{test.effect:.0%}",
-            markup(test.finding),
+            test.finding,
         )
     return table
 
@@ -96,9 +96,9 @@ def _best(comparison: Comparison) -> FittedTable:
     for each in best_designs(comparison):
         values = each.evaluation.assessment.objectives
         table.add_row(
-            markup(each.reason),
-            markup(each.run.run.directory.name),
-            str(each.evaluation.number),
-            *(rounded(values[objective.name]) for objective in comparison.objectives),
+            each.reason,
+            each.run.run.directory.name,
+            each.evaluation.number,
+            *(values[objective.name] for objective in comparison.objectives),
         )
     return table

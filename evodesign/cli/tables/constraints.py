@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from evodesign.cli.output import markup, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import Assessment, Constraint
 from evodesign.violations import bounds_text, violations
@@ -25,10 +24,8 @@ def constraints_table(
     found = violations(constraints, columns[-1][1])
     for constraint in constraints:
         values = [assessment.constrained.get(constraint.name) for _, assessment in columns]
-        name = markup(f"{constraint.name} [{constraint.unit}]")
-        table.add_row(
-            name, markup(bounds_text(constraint)), *map(rounded, values), rounded(found[constraint.name])
-        )
+        name = f"{constraint.name} [{constraint.unit}]"
+        table.add_row(name, bounds_text(constraint), *values, found[constraint.name])
     return table
 
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 import msgspec
-from rich.markup import escape
 
-from evodesign.cli.output import heading, interval, rounded
+from evodesign.cli.output import heading, interval
 from evodesign.cli.tables.bill import actuators_table, mass_title
 from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.cli.tables.constraints import constraints_table, violation_heading
@@ -63,10 +62,10 @@ def _assessment_tables(
     summary = titled(f"{problem.name}: {name}", [*names("objective"), *numbers("value")])
     for objective in problem.objectives:
         value = assessment.objectives.get(objective.name)
-        summary.add_row(escape(heading(objective)), rounded(value))
-    summary.add_row(escape(violation_heading(problem.constraints)), rounded(assessment.violation))
+        summary.add_row(heading(objective), value)
+    summary.add_row(violation_heading(problem.constraints), assessment.violation)
     reach = result.reach
-    summary.add_row(escape("reach [m]"), interval(reach.lowest, reach.highest, or_lower=reach.or_lower))
+    summary.add_row("reach [m]", interval(reach.lowest, reach.highest, or_lower=reach.or_lower))
     constraints = problem.constraints
     bounds = [constraints_table(constraints, "constraints", ("value", assessment))] if constraints else []
     if not any(outcome.case.label for outcome in assessment.cases):
@@ -113,5 +112,5 @@ def _sensitivity_table(
             moves = {name: value * ranges[name] * 0.01 for name, value in found.gradient.items()}
             strongest = sorted(moves, key=lambda name: -abs(moves[name]))[:STRONGEST]
             shown = ", ".join(f"{name} {moves[name]:+.2g}" for name in strongest if moves[name])
-        table.add_row(escape(title), escape(shown or "nothing moves it"))
+        table.add_row(title, shown or "nothing moves it")
     return table

@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from evodesign.cli.output import markup
 from evodesign.cli.tables.people import Asked, hardest_cases
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.human.back import ACTION_LIMIT
@@ -38,7 +37,7 @@ def effort_table(asked: Sequence[Asked], *, titled_too: bool) -> FittedTable:
         caption=CAPTION,
     )
     for case, each in rows:
-        table.add_row(markup(case.name), *_figures(each))
+        table.add_row(case.name, *_figures(each))
     return table
 
 
@@ -51,7 +50,7 @@ def _figures(asked: Ergonomics) -> tuple[str, ...]:
         f"{asked.load_torque:.1f}",
         _time(asked.endurance),
         *("-" if score is None else str(score.whole) for score in scores),
-        "-" if asked.endurance is None else markup(in_words(asked.endurance.joint.joint)),
+        "-" if asked.endurance is None else in_words(asked.endurance.joint.joint),
     )
 
 

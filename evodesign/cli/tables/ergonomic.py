@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from evodesign.cli.output import rounded
 from evodesign.cli.tables.reproduction import AGENTS, height_table, verdict_lines
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.reproduction.files2025 import ErgonomicReproduction
@@ -27,8 +26,7 @@ def robots_of_2025(done: ErgonomicReproduction) -> FittedTable:
     ]
     table = titled("Robots of 2025 and of our searches: reach, cost and length multipliers", columns)
     for name, robot in done.robots.items():
-        values = (robot.highest, robot.cost, *(done.designs[name][each] for each in lengths))
-        table.add_row(name, *("-" if value is None else rounded(value) for value in values))
+        table.add_row(name, robot.highest, robot.cost, *(done.designs[name][each] for each in lengths))
     return table
 
 

@@ -27,9 +27,9 @@ def families_table(header: RunHeader, found: Families) -> FittedTable:
         kind = found.kinds[index]
         objectives = kind.elite.assessment.objectives
         table.add_row(
-            str(kind.elite.number),
-            *map(rounded, kind.values),
-            *(rounded(objectives.get(each.name)) for each in header.objectives),
+            kind.elite.number,
+            *kind.values,
+            *(objectives.get(each.name) for each in header.objectives),
         )
     return table
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from evodesign.cli.output import markup, rounded
+from evodesign.cli.output import rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.motion.solution import LiftSolution
 
@@ -31,7 +31,7 @@ def _efforts(title: str, solution: LiftSolution) -> FittedTable:
     for name, effort in solution.efforts.items():
         found = [effort.mean_torque, effort.peak_torque, effort.static_share, effort.work, effort.power.max()]
         found += [effort.disturbed[disturbance].max() for disturbance in disturbances]
-        table.add_row(markup(name), *(rounded(value) for value in found))
+        table.add_row(name, *found)
     return table
 
 

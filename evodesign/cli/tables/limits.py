@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from evodesign.cli.output import markup
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import ActiveLimit, CaseDetail
 
@@ -44,7 +43,7 @@ def limits_table(cases: Sequence[CaseDetail], title: str) -> FittedTable:
         for identity in own:
             limit, found = known[identity], changes[identity]
             cells = [_text(change) for change in found] if few else _summary(found)
-            table.add_row(markup(agent or "both"), markup(limit.words), markup(limit.step[1]), *cells)
+            table.add_row(agent or "both", limit.words, limit.step[1], *cells)
         table.add_section()
     return table
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from evodesign.analysis.front import to_minimise
 from evodesign.analysis.importance import Estimate, Importance, ObjectiveImportance, PairImportance, Slice
-from evodesign.cli.output import markup, rounded
+from evodesign.cli.output import rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import Evaluation, Objective, RunHeader
 
@@ -32,7 +32,7 @@ def _table(found: ObjectiveImportance) -> FittedTable:
     table = titled(title, [*names("parameter"), *numbers(*shares, *slopes)], caption=_pairs(found.pairs))
     for row in found.parameters:
         cells = [*_percent(row.first), *_percent(row.total)] if found.response.models else []
-        table.add_row(markup(row.name), *cells, *(_figures(row.slope) if with_slopes else []))
+        table.add_row(row.name, *cells, *(_figures(row.slope) if with_slopes else []))
     return table
 
 
@@ -78,10 +78,10 @@ def _slices(objective: Objective, design: Evaluation, made: Sequence[Slice]) -> 
         turned = [to_minimise(objective, value) for value in each.predicted]
         best = min(range(len(turned)), key=turned.__getitem__)
         table.add_row(
-            markup(each.parameter),
-            rounded(design.assessment.design[each.parameter]),
+            each.parameter,
+            design.assessment.design[each.parameter],
             *(_predicted(each, place) for place in (0, -1, best)),
-            rounded(each.values[best]),
+            each.values[best],
         )
     return table
 

@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
-from evodesign.cli.output import markup
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import Case
 
@@ -66,8 +65,8 @@ def person_table(cases: Sequence[tuple[str, Ergonomics]], title: str = TITLE) ->
     for case, asked in cases:
         strain, task = asked.strain, asked.task
         table.add_row(
-            markup(case),
-            "-" if strain is None else markup(f"{strain.joint}, {strain.movement}"),
+            case,
+            "-" if strain is None else f"{strain.joint}, {strain.movement}",
             "-" if strain is None else f"{strain.share:.1%}",
             f"{task.horizontal:.2f}",
             f"{task.vertical:.2f}",

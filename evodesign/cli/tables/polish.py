@@ -5,9 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from rich.markup import escape
-
-from evodesign.cli.output import heading, rounded
+from evodesign.cli.output import heading
 from evodesign.cli.tables.constraints import constraints_table
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.evaluation.polish import Aim, Polished
@@ -24,12 +22,12 @@ def polish_tables(problem: DesignProblem, number: int, done: Polished) -> tuple[
     for objective in problem.objectives:
         before, after = (a.objectives[objective.name] for a in (done.before, done.after))
         change = f"{(after - before) / abs(before):+.2%}" if before else "-"
-        objectives.add_row(escape(heading(objective)), rounded(before), rounded(after), change)
+        objectives.add_row(heading(objective), before, after, change)
     parameters = titled("parameters that changed", [*names("parameter"), *numbers("before", "after")])
     for name, before in done.before.design.items():
         after = done.after.design[name]
         if after != before:
-            parameters.add_row(escape(name), rounded(before), rounded(after))
+            parameters.add_row(name, before, after)
     held = (("before", done.before), ("after", done.after))
     bounds = [constraints_table(problem.constraints, "constraints", *held)] if problem.constraints else []
     return objectives, *bounds, parameters

@@ -8,10 +8,9 @@ from typing import Any
 from rich.markup import escape
 from rich.table import Table
 
-from evodesign.cli.output import markup, printable, rounded
+from evodesign.cli.output import printable, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.collision.pairs import JOINED, STILL
-from evodesign.errors import on_one_line
 from evodesign.guess.preflight import Finding
 from evodesign.mechanics.agent import ROBOT
 from evodesign.problem.build import DesignProblem
@@ -46,7 +45,7 @@ def rules_table(differences: Iterable[RuleDifference]) -> FittedTable:
     table = titled("links whose shapes and inertia disagree", columns, caption=caption)
     for each in differences:
         moments = (", ".join(f"{1e3 * moment:.3g}" for moment in one) for one in each.moments_kg_m2)
-        table.add_row(markup(each.link), str(each.taken), f"{1e3 * each.center_m:.1f}", *moments)
+        table.add_row(each.link, str(each.taken), f"{1e3 * each.center_m:.1f}", *moments)
     return table
 
 
@@ -54,7 +53,7 @@ def findings_table(findings: Iterable[Finding]) -> FittedTable:
     """What was tried before anything long begins."""
     table = titled("tried with the robot of the file", names("item", "found"))
     for finding in findings:
-        table.add_row(markup(finding.item), markup(finding.found or "fails"))
+        table.add_row(finding.item, finding.found or "fails")
     return table
 
 
@@ -67,10 +66,10 @@ def _agents_table(name: str, agents: Sequence[dict[str, Any]]) -> FittedTable:
         counts = (agent["links"], agent["joints"], agent["moving_joints"])
         table.add_row(
             agent["name"],
-            *([markup(agent.get("who", ""))] if several else []),
-            escape(_model(agent)),
+            *([agent.get("who", "")] if several else []),
+            _model(agent),
             *map(str, counts),
-            rounded(agent["mass_kg"]),
+            agent["mass_kg"],
         )
     return table
 
@@ -135,7 +134,7 @@ def _add_link(table: FittedTable, link: dict[str, Any]) -> None:
     figures = (rounded(link["density_kg_per_m3"]), rounded(link["mass_kg"]))
     for number, shape in enumerate(link["solids"] or [link["kind"]]):
         name, density, mass = (link["link"], *figures) if number == 0 else ("", "", "")
-        table.add_row(escape(name), shape, escape(_growth(link, number)), density, mass)
+        table.add_row(name, shape, _growth(link, number), density, mass)
 
 
 def _parameters_table(parameters: Iterable[dict[str, Any]]) -> FittedTable:
@@ -145,7 +144,7 @@ def _parameters_table(parameters: Iterable[dict[str, Any]]) -> FittedTable:
         links = ", ".join([*(link["link"] for link in parameter["links"]), *parameter.get("joints", ())])
         if "materials" in parameter:
             links = f"{links}; of {', '.join(parameter['materials'])}"
-        table.add_row(escape(parameter["name"]), *bounds, escape(links))
+        table.add_row(parameter["name"], *bounds, links)
     return table
 
 
@@ -153,8 +152,7 @@ def _materials_table(materials: Iterable[dict[str, Any]]) -> FittedTable:
     columns = [*names("material"), *numbers("density [kg/m^3]"), *names("source")]
     table = titled("materials", columns)
     for material in materials:
-        name, source = escape(on_one_line(material["name"])), escape(on_one_line(material["source"]))
-        table.add_row(name, rounded(material["density_kg_per_m3"]), source)
+        table.add_row(material["name"], material["density_kg_per_m3"], material["source"])
     return table
 
 
@@ -167,7 +165,7 @@ def _exempt_table(exempt: Mapping[str, Sequence[Mapping[str, Any]]]) -> FittedTa
     table = titled("bodies that may overlap", names("agent", "reason", "pairs"))
     for (agent, reason), found in sorted(rows.items(), key=lambda row: row[0][0] != ROBOT):
         told = f"{len(found)} pairs (--json lists them)" if reason in (JOINED, STILL) else ", ".join(found)
-        table.add_row(markup(agent), markup(reason), markup(told))
+        table.add_row(agent, reason, told)
     return table
 
 

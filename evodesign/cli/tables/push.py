@@ -6,7 +6,6 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from evodesign.cli.output import markup
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.evaluation.pushes import FoundMargins
 from evodesign.simulation.push import PushOutcome
@@ -32,7 +31,7 @@ def margins_table(title: str, found: FoundMargins) -> FittedTable:
             for each in found.margins
             if each.moment == moment
         }
-        table.add_row(markup(moment), *(f"{own[turn].impulse:.1f}" for turn in turns))
+        table.add_row(moment, *(f"{own[turn].impulse:.1f}" for turn in turns))
     return table
 
 
@@ -42,11 +41,11 @@ def pushes_table(title: str, outcomes: Mapping[str, PushOutcome]) -> FittedTable
     table = titled(title, [*names("moment"), *columns, *names("lost")], keys=1)
     for moment, each in outcomes.items():
         table.add_row(
-            markup(moment),
+            moment,
             "-" if each.recovery is None else f"{each.recovery:.2f}",
             f"{1e3 * each.load_off:.1f}",
             f"{1e3 * each.capture:.1f}",
             f"{100.0 * each.saturation:.0f}",
-            markup(each.reason or "no"),
+            each.reason or "no",
         )
     return table

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from rich.markup import escape
-
 from evodesign.analysis.failures import causes
 from evodesign.cli.output import rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
@@ -50,9 +48,7 @@ def height_table(
     for model, rows in by_setting.items():
         for figure in figures:
             for number, (setting, torque_norms) in enumerate(rows.items()):
-                values = [
-                    rounded(getattr(torque_norms[h], figure)) if h in torque_norms else "-" for h in heights
-                ]
+                values = [getattr(torque_norms.get(h), figure, None) for h in heights]
                 first = (model, figure) if number == 0 else ("", "")
                 table.add_row(*first, setting, *values, end_section=number == len(rows) - 1)
     return table
@@ -62,8 +58,7 @@ def claims_table(claims: Iterable[Claim]) -> FittedTable:
     """Every claim with its verdict."""
     table = titled("Claims", names("claim", "by", "paper", "here", "verdict"))
     for claim in claims:
-        shown = (claim.subject, claim.by, claim.paper, claim.found, _verdict(claim))
-        table.add_row(*(escape(text) for text in shown))
+        table.add_row(claim.subject, claim.by, claim.paper, claim.found, _verdict(claim))
     return table
 
 

@@ -50,10 +50,10 @@ def result_table(run: RunLog, chosen: Chosen) -> FittedTable:
         assessment = by_number[number].assessment
         values = assessment.objectives
         table.add_row(
-            str(number),
+            number,
             KNEE if KNEE in reasons else "",
             *(f"{'* ' * (each.name in reasons)}{rounded(values[each.name])}" for each in objectives),
-            *(rounded(assessment.constrained.get(each.name)) for each in others),
+            *(assessment.constrained.get(each.name) for each in others),
         )
     return table
 

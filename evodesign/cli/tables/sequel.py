@@ -26,21 +26,11 @@ def robots_table(done: SequelReproduction) -> FittedTable:
     for name, robot in done.robots.items():
         strict = done.stricter[name]
         logged = "failed" if name in FAILED else rounded(LOGGED[name]) if name in LOGGED else "-"
-        before = (
-            robot.fitness,
-            robot.cost,
-            robot.robot_torque,
-            robot.human_torque,
-            robot.mass,
-            robot.highest,
-        )
         table.add_row(
             name,
             logged,
-            *("-" if value is None else rounded(value) for value in before),
-            f"{robot.held}",
-            *("-" if value is None else rounded(value) for value in (strict.cost, strict.robot_torque)),
-            f"{strict.held}",
+            *(robot.fitness, robot.cost, robot.robot_torque, robot.human_torque, robot.mass, robot.highest),
+            *(robot.held, strict.cost, strict.robot_torque, strict.held),
         )
     return table
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from evodesign.cli.output import markup
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.control.gains import Feedback
 from evodesign.evaluation.simulations import SimulatedCase
@@ -24,8 +23,8 @@ def simulation_table(title: str, simulations: Sequence[SimulatedCase], feedback:
     for each in simulations:
         for name, agent in each.outcome.agents.items():
             table.add_row(
-                markup(each.name),
-                markup(name),
+                each.name,
+                name,
                 _hundredths(1e3 * each.outcome.drift),
                 _hundredths(1e3 * agent.tracking),
                 _hundredths(100.0 * agent.torque_share),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from evodesign.analysis.people_spread import NEGLIGIBLE, Moments, PeopleSpread, QuantitySpread
-from evodesign.cli.output import heading, markup, rounded
+from evodesign.cli.output import heading, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import Constraint, Objective
 
@@ -36,7 +36,7 @@ def spread_table(
         cells = [moments_text(own.quantities[name].values, own.samples) for name in headings]
         if compared:
             cells += [difference_text(own.quantities[name], own.samples) for name in varying]
-        table.add_row(str(number), f"{own.on_front} of {spread.samples}", *cells)
+        table.add_row(number, f"{own.on_front} of {spread.samples}", *cells)
     return table
 
 
@@ -69,7 +69,7 @@ def quantities_table(
             count = each.difference.count if each.difference is not None else 0
             better = "-" if each.better is None else f"{each.better} of {count}"
             cells += [difference_text(each, own.samples), better]
-        table.add_row(markup(title), *cells)
+        table.add_row(title, *cells)
     return table
 
 

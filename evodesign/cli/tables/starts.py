@@ -37,7 +37,7 @@ def starts_table(problem: DesignProblem, known: Precomputed) -> FittedTable:
         coverage = found.coverage
         share = f"{coverage.share:.1%}" if coverage.designs else "-"
         miss = f"{rounded(coverage.worst)} {unit}" if coverage.good < coverage.designs else "none"
-        table.add_row(name, str(len(found.starts)), str(coverage.designs), share, miss)
+        table.add_row(name, len(found.starts), coverage.designs, share, miss)
     return table
 
 

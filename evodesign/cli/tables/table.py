@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 
 from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, RenderableType
-from rich.markup import render
 from rich.table import Table
 from rich.text import Text
 
@@ -24,6 +23,10 @@ COMFORTABLE = 9
 
 EDGE, PER_COLUMN = 1, 3
 """Cells of a table's left edge, and of a column's padding with the line to its right."""
+
+
+Cell = str | float | None
+"""A text, a count, a number that is rounded, or none, which is a dash."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,9 +77,9 @@ class FittedTable:
     caption: str = ""
     _rows: list[tuple[list[Text], bool]] = field(default_factory=list)
 
-    def add_row(self, *cells: str, end_section: bool = False) -> None:
-        """A row of cells in rich's markup; a line follows where a section ends."""
-        self._rows.append(([render(cell) for cell in cells], end_section))
+    def add_row(self, *cells: Cell, end_section: bool = False) -> None:
+        """A row of texts, shown as they stand, and numbers; a line follows where a section ends."""
+        self._rows.append(([_shown(cell) for cell in cells], end_section))
 
     def add_section(self) -> None:
         """A line after the last row."""
@@ -145,6 +148,12 @@ class FittedTable:
         return table
 
 
+def _shown(cell: Cell) -> Text:
+    if isinstance(cell, str):
+        return Text(printable(cell))
+    return Text(str(cell) if isinstance(cell, int) else rounded(cell))
+
+
 def titled(title: str, columns: Sequence[TableColumn], *, keys: int = 1, caption: str = "") -> FittedTable:
     """A table under a title, unless that is empty; both title and caption are shown as they stand."""
     return FittedTable(title, columns, keys, caption)
@@ -168,8 +177,8 @@ def designs_table(title: str, header: RunHeader, designs: Iterable[Evaluation]) 
     for each in designs:
         values, constrained = each.assessment.objectives, each.assessment.constrained
         table.add_row(
-            str(each.number),
-            *(rounded(values[objective.name]) for objective in objectives),
-            *(rounded(constrained.get(constraint.name)) for constraint in others),
+            each.number,
+            *(values[objective.name] for objective in objectives),
+            *(constrained.get(constraint.name) for constraint in others),
         )
     return table

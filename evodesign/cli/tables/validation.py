@@ -54,7 +54,7 @@ def _moments(lift: str, compared: Sequence[ComparedCase]) -> FittedTable:
         known = [each.moments["l5s1"] for each in of if "l5s1" in each.moments]
         cells = [_mean([each.given(way) for each in of]) for way in WAYS]
         label = hands if hands == HOLDING else "empty"
-        table.add_row(label, heights, str(len(of)), _whole(fmean(known)) if known else "-", *cells)
+        table.add_row(label, heights, len(of), _whole(fmean(known)) if known else "-", *cells)
     return table
 
 

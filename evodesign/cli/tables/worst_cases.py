@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 
-from evodesign.cli.output import markup, rounded
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.records import AgentDetail, CaseDetail
 from evodesign.report.subset import ranked_joints
@@ -67,7 +66,7 @@ def _by_height(named: str, cases: Sequence[CaseDetail], values_of: ValuesOf) -> 
     columns = [*names("agent", named), *numbers(*(detail.place for detail in cases))]
     table = titled("", columns, keys=2)
     for agent, name, values, last in _rows(cases, values_of):
-        table.add_row(agent, markup(name), *map(rounded, values), end_section=last)
+        table.add_row(agent, name, *values, end_section=last)
     return table
 
 
@@ -80,6 +79,6 @@ def _worst(
         known = [(value, detail) for value, detail in zip(values, cases, strict=True) if value is not None]
         worst, where = max(known, key=lambda found: abs(found[0]))
         mean = sum(abs(value) for value, _ in known) / len(known)
-        case = markup(where.case.name)
-        table.add_row(agent, markup(name), rounded(mean), rounded(worst), case, end_section=last)
+        case = where.case.name
+        table.add_row(agent, name, mean, worst, case, end_section=last)
     return table

@@ -180,13 +180,7 @@ class _Ends(Generic[End]):
 
 
 def _cover(good: NDArray[np.bool_], work: Costs, most: int) -> list[int]:
-    """Starts that together serve the designs that any serves, with little work: those that serve most first.
-
-    Args:
-        good: whether a start (column) serves a design (row).
-        work: of each start.
-        most: starts at most.
-    """
+    """Starts that together serve all designs that any serves: those that serve most first, of little work."""
     found: list[int] = []
     wanted = good.any(axis=1).sum()
     while len(found) < most and good[:, found].any(axis=1).sum() < wanted:

@@ -15,7 +15,6 @@ and sees a point p at (p . right, p . up), the nearer the larger p . d.
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -161,8 +160,9 @@ def _heading(stage: PlacedScene) -> str:
     who = stage.models.label
     if len(stage.models.trees) == 1:
         (name,) = stage.models.trees
-        word = f"{WORDS[_role(name)]}{name.removeprefix(_role(name)).replace('_', ' ')}"
-        who = f"{word} with {who}" if _role(name) == ROBOT and who else who or word
+        kind = stage.models.kind(name)
+        word = f"{WORDS[kind]}{name.removeprefix(kind).replace('_', ' ')}"
+        who = f"{word} with {who}" if kind == ROBOT and who else who or word
     place = f"load at {stage.place}"
     return f"{who}\n{place}" if who else place
 
@@ -199,7 +199,7 @@ def _painted_solids(stage: PlacedScene, view: Camera, light: Array) -> Iterator[
         for face in faces_of(shape, place):
             if float(face.normal @ view.axes[2]) > 0.0:
                 corners = view.seen(face.corners)
-                color = _shade(name, float(face.normal @ light))
+                color = _shade(stage.models.kind(name), float(face.normal @ light))
                 yield float(corners[:, 2].mean()), corners[:, :2], color
 
 
@@ -208,20 +208,15 @@ def _painted_meshes(stage: PlacedScene, view: Camera, light: Array) -> Iterator[
     for name, mesh, world_from_link in stage.meshes:
         corners, normals = seen_triangles(mesh, world_from_link, towards)
         drawn = view.seen(corners.reshape(-1, 3)).reshape(-1, 3, 3)
-        colors = [_shade(name, slope) for slope in (normals @ light).tolist()]
+        colors = [_shade(stage.models.kind(name), slope) for slope in (normals @ light).tolist()]
         yield from zip(drawn[:, :, 2].mean(axis=1).tolist(), drawn[:, :, :2], colors, strict=True)
 
 
-def _shade(name: str, slope: float) -> tuple[float, float, float]:
-    """An agent's colour in the light: darker where a face turns away from it."""
+def _shade(kind: str, slope: float) -> tuple[float, float, float]:
+    """A kind's colour in the light: darker where a face turns away from it."""
     brightness = 0.62 + 0.43 * max(slope, -0.2)
-    red, green, blue = (min(channel * brightness, 1.0) for channel in to_rgb(AGENTS[_role(name)]))
+    red, green, blue = (min(channel * brightness, 1.0) for channel in to_rgb(AGENTS[kind]))
     return red, green, blue
-
-
-def _role(name: str) -> str:
-    """What an agent is, which its name begins with."""
-    return name.partition("_")[0]
 
 
 def _longest(stages: Sequence[PlacedScene], by_ground: bool) -> float:
@@ -251,7 +246,7 @@ def _limits(stages: Sequence[PlacedScene], view: Camera) -> tuple[Array, Array]:
 
 def _key(figure: Figure, axes: Axes, stages: Sequence[PlacedScene], longest: Mapping[bool, float]) -> None:
     """Who is who, and how long arrows are."""
-    drawn = {*map(_role, itertools.chain.from_iterable(stage.models.trees for stage in stages)), LOAD}
+    drawn = {*(stage.models.kind(name) for stage in stages for name in stage.models.trees), LOAD}
     who = [Patch(color=color, label=WORDS[name]) for name, color in AGENTS.items() if name in drawn]
     kinds = {True: "force on the feet", False: "force on the hands"}
     arrows = [

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 
+from msgspec import to_builtins
 from msgspec.structs import replace
 
 from evodesign.analysis.active_limits import frequent_limits
@@ -16,7 +17,7 @@ from evodesign.analysis.families import families, families_json
 from evodesign.analysis.front import front
 from evodesign.analysis.growth import growth
 from evodesign.analysis.importance import Importance, importance, slices
-from evodesign.analysis.importance_json import importance_json, slices_json
+from evodesign.analysis.importance_json import importance_json
 from evodesign.analysis.people_spread import all_spreads_json, spread_of_run
 from evodesign.errors import EvodesignError, RunError
 from evodesign.evaluation.clearance import Clearances
@@ -129,8 +130,8 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
 
 
 def _words(problem: DesignProblem) -> dict[str, str]:
-    """What joints and links of everybody are called."""
-    trees = {id(agent.tree): agent.tree for scene in problem.scenes for agent in scene.agents}
+    """What joints and links of the people are called; a robot's keep their names."""
+    trees = {id(person.tree): person.tree for scene in problem.scenes for person in scene.people}
     return {name: words for tree in trees.values() for name, words in words_of(tree).items()}
 
 
@@ -240,7 +241,7 @@ def _with_slices(
     """The designs, those that are marked with slices through them."""
     through = {each.number: each for each in run.evaluations if each.number in marked}
     return {
-        number: replace(each, slices=slices_json(slices(found, run.header.parameters, through[number])))
+        number: replace(each, slices=to_builtins(slices(found, run.header.parameters, through[number])))
         if number in through
         else each
         for number, each in designs.items()

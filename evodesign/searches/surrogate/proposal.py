@@ -2,8 +2,10 @@
 
 Half of a batch comes from Thompson samples of the global model, four from each, the other half from its
 mean with the local residual: the first explore, the second refine. Each part is the best of a small
-evolution (`evolution`) that starts from the front, chosen by hypervolume (`selection`). Designs on their
-way count as if they were what the model expects. A genome that is known already is moved a little.
+evolution (`evolution`) that starts from the front, chosen by hypervolume (`selection`). One that refines seeks
+an end of the front, the objectives by turns: beyond a reference point that nobody gave an end adds no
+hypervolume, and is on the front all the same. Designs on their way count as if they were what the model
+expects. A genome that is known already is moved a little.
 """
 
 from __future__ import annotations
@@ -30,6 +32,9 @@ ANYWHERE = 20
 
 LEAST = 1e-6
 """Distance of ideal and reference, relative to the latter, that is always left between them."""
+
+FURTHER = 1e-3
+"""By how much of an objective's range an end must be expected to lie further out."""
 
 SAME = 1e-8
 """Squared distance below which a genome is known already."""
@@ -68,7 +73,9 @@ def proposals(
     for first in range(0, drawn, OF_ONE_SAMPLE):
         generations = FIRST_GENERATIONS if first == 0 else GENERATIONS
         batch.take(model.drawn(generator), min(OF_ONE_SAMPLE, drawn - first), generations)
-    batch.take(expected, count - drawn, GENERATIONS if drawn else FIRST_GENERATIONS)
+    if settings.objectives > 1 and count - drawn > 1:
+        batch.take_end(expected, len(knowledge) // count % settings.objectives)
+    batch.take(expected, count - batch.size, GENERATIONS if drawn else FIRST_GENERATIONS)
     return batch.genomes(knowledge.points)
 
 
@@ -102,18 +109,48 @@ class _Batch:
         if genomes:
             self._front = np.vstack([self._front, self._scaled(function(np.array(genomes)))])
 
+    @property
+    def size(self) -> int:
+        """How many were found."""
+        return len(self._found)
+
     def take(self, function: Function | None, count: int, generations: int) -> None:
         """Add the best of an evolution on a function; None stands for nothing but feasibility."""
         if count == 0:
             return
+        evolved_members = self._evolved(self._judged(function), generations)
+        self._population = evolved_members.points
+        members = _without(evolved_members, self._found)
+        for place in chosen(members, self._front, count, self._generator):
+            self._add(members.points[place], members.objectives[place])
+
+    def take_end(self, function: Function, objective: int) -> None:
+        """Add the best in one objective, if it is expected to be better than all that is known.
+
+        What lies beyond a reference that was given counts as infeasible.
+        """
+        judged = self._judged(function)
+        given = [value is not None for value in self._settings.reference_values]
+
+        def one(points: Array) -> tuple[Array, Array]:
+            objectives, infeasibility = judged(points)
+            beyond = np.maximum(objectives[:, given] - 1.0, 0.0).sum(axis=1)
+            return objectives[:, [objective]], infeasibility + beyond
+
+        members = self._evolved(one, GENERATIONS)
+        best = np.lexsort((members.objectives[:, 0], members.infeasibility))[0]
+        if members.infeasibility[best] == 0.0 and members.objectives[best, 0] < -FURTHER:
+            self._add(members.points[best], judged(members.points[[best]])[0][0])
+
+    def _evolved(self, judged: Judged, generations: int) -> Members:
         counts, generator = self._settings.counts, self._generator
         anywhere = snapped(generator.random((ANYWHERE, self._settings.dimension)), counts)
         start = np.vstack([self._ends[:MEMBERS], self._population, anywhere])
-        members = evolved(self._judged(function), start, generations, counts, generator)
-        self._population = members.points
-        for place in chosen(_without(members, self._found), self._front, count, generator):
-            self._found.append(members.points[place])
-            self._front = np.vstack([self._front, members.objectives[place]])
+        return evolved(judged, start, generations, counts, generator)
+
+    def _add(self, point: Array, objectives: Array) -> None:
+        self._found.append(point)
+        self._front = np.vstack([self._front, objectives])
 
     def _judged(self, function: Function | None) -> Judged:
         def judged(points: Array) -> tuple[Array, Array]:

@@ -28,7 +28,7 @@ WITHIN = 0.02
 STAMP = "2024-01-01T00:00:00"
 
 
-ROBOTS = [("icub_hardware", 3), ("icub_lifting", 7), ("icub_geometry", 5)]
+ROBOTS = [("icub_lifting", 7), ("icub_geometry", 5)]
 
 
 @pytest.fixture(scope="module", params=ROBOTS, ids=lambda each: each[0])

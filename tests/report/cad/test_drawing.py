@@ -22,7 +22,7 @@ from evodesign.report.cad.sheet import REDUCTIONS, drawing, drawing_svg, spread
 from tests.report.cad.press import press
 from tests.report.cad.robots import designed, frames_at_zero, in_pinocchio
 
-ROBOTS = [("icub_hardware", 3), ("icub_lifting", 7), ("sartore2023_motors", 1), ("icub_materials", 2)]
+ROBOTS = [("icub_lifting", 7), ("sartore2023_motors", 1), ("icub_materials", 2)]
 
 
 @pytest.fixture(

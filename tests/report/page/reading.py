@@ -81,7 +81,7 @@ def apart(groups: Sequence[Mapping[str, Any]]) -> dict[int, Any]:
 def embedded(page: str) -> Content:
     """The content as a browser finds it: up to the first end of its script element."""
     block = page.split('<script type="text/plain" id="content">')[1].split("</script>")[0]
-    told = msgspec.json.decode(gzip.decompress(base64.b64decode(block)))
+    told = msgspec.json.decode(gzip.decompress(base64.b85decode(block)))
     designs: dict[int, dict[str, Any]] = {}
     limits, kinds = told.pop("limits"), told.pop("limit_kinds")
     for field, groups in told["designs"].items():

@@ -92,7 +92,7 @@ def test_the_card_shows_what_the_bill_says(
         assert f"{rows[most]['rated_torque_n_m']:.3g}" in text
     forearm = bill["links"]["l_forearm"]
     text = chromium.value("document.querySelector('[data-wall=l_forearm]').textContent")
-    assert text.startswith("left forearmaluminium 60612")
+    assert text.startswith("l_forearmaluminium 60612")
     assert f"{float(format(forearm['safety_factor'], '.3g')):g}" in text
     assert text.endswith(forearm["safety_case"])
     assert chromium.complaints() == []

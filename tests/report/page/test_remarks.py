@@ -112,11 +112,11 @@ def test_whatever_gives_cause_for_a_remark_has_one(chromium: Tab, real_run: RunL
     chromium.events.clear()
     open_page(chromium, path)
     told = dict(remarks(chromium))
-    assert told["parts"] == "Parts do not fit: left hip 1 and left hip 2 lack 2 mm."
+    assert told["parts"] == "Parts do not fit: l_hip_1 and l_hip_2 lack 2 mm."
     assert told["actuator"] == "Actuators of knee are used at 120 %."
     assert told["temperature"] == "Windings of knee reach 118 \u00b0C of at most 120 \u00b0C."
     assert told["fallback"].endswith("IPOPT solved 3 times instead.")
-    assert told["bodies"] == "Nearest bodies: robot left hand and load, 1 mm apart."
+    assert told["bodies"] == "Nearest bodies: robot l_hand and load, 1 mm apart."
     assert told["back"].startswith("Back: L5/S1 is compressed by 3.6 kN")
     assert told["hand"] == "Robot: moment on a hand 4.9 N m of at most 5 N m."
     assert chromium.complaints() == []

@@ -1,8 +1,24 @@
 // What the page knows, what is chosen in it, and who wants to be told.
 
-// Text, compressed with gzip, in the letters of base64.
+// Bytes in the letters of base85 (those of git), four to five letters.
+const LETTERS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz!#$%&()*+-;<=>?@^_`{|}~";
+const bytesOf = (letters) => {
+  const values = new Uint8Array(128);
+  [...LETTERS].forEach((letter, value) => (values[letter.charCodeAt(0)] = value));
+  const words = new DataView(new ArrayBuffer(4 * Math.ceil(letters.length / 5)));
+  for (let start = 0; start < letters.length; start += 5) {
+    let word = 0;
+    for (let place = start; place < start + 5; place++) {
+      word = 85 * word + (place < letters.length ? values[letters.charCodeAt(place)] : 84);
+    }
+    words.setUint32((4 * start) / 5, word);
+  }
+  return new Uint8Array(words.buffer, 0, Math.floor((4 * letters.length) / 5));
+};
+
+// Text, compressed with gzip, in the letters of base85.
 const unpacked = (letters) => {
-  const bytes = Uint8Array.from(atob(letters), (letter) => letter.charCodeAt(0));
+  const bytes = bytesOf(letters);
   return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).text();
 };
 
