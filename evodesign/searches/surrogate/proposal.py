@@ -2,8 +2,8 @@
 
 Half of a batch comes from Thompson samples of the global model, four from each, the other half from its
 mean with the local residual: the first explore, the second refine. Each part is the best of a small
-evolution (`evolution`) that starts from the front, chosen by hypervolume (`selection`). One that refines seeks
-an end of the front, the objectives by turns: beyond a reference point that nobody gave an end adds no
+evolution (`evolution`) that starts from the front, chosen by hypervolume (`selection`). One that refines
+seeks an end of the front, the objectives by turns: beyond a reference point that nobody gave an end adds no
 hypervolume, and is on the front all the same. Designs on their way count as if they were what the model
 expects. A genome that is known already is moved a little.
 """
