@@ -123,7 +123,7 @@ def _evaluated(
     parameters, arrived = run.header.parameters, 0
     designs = {number: run.evaluation(number) for _, number in asked}
     arguments = [
-        (sample, tuple(designs[number].assessment.design[each.name] for each in parameters))
+        (sample, factory.problems[sample][0].space.values_of(designs[number].assessment.design))
         for sample, number in asked
     ]
     with closing(run_stoppable(pool, factory, arguments, stop)) as results:

@@ -182,7 +182,7 @@ class Problem:
             ('length.shank = 1.9 is beyond its bounds, 0.6 to 1.8',)
         """
         values = self.values(design)
-        beyond = beyond_bounds(self.parameters, values)
+        beyond = beyond_bounds([each.record for each in self.built.space.parameters], values)
         if strict and beyond:
             name, sentence = next(iter(beyond.items()))
             raise InputError("design", name, "a value within its bounds (strict=True)", sentence)
@@ -239,7 +239,7 @@ class Problem:
                 wanted, sound = "a positive number", math.isfinite(values[name]) and values[name] > 0.0
             if not sound:
                 raise InputError("design", name, wanted, f"{values[name]}")
-        for parameter, name in zip(self.built.space.parameters, names, strict=True):
+        for parameter, name in zip(self.built.space.free, names, strict=True):
             if values[name] != self.unscaled[name]:
                 refuse_no_choice(parameter, values[name], "design", name)
-        return tuple(float(values[name]) for name in names)
+        return self.built.space.values_of({name: float(values[name]) for name in names})

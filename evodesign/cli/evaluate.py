@@ -114,7 +114,7 @@ def chosen_design(
     from evodesign.problem.designs import beyond_bounds
 
     chosen, values = _named_design(problem, file, name)
-    show_notes(beyond_bounds(problem.space.records, values).values())
+    show_notes(beyond_bounds([each.record for each in problem.space.parameters], values).values())
     return chosen, values
 
 

@@ -100,7 +100,7 @@ class DesignParameter:
         group: name of the group, unique among the parameters of its kind; of an allocation parameter, its
             own.
         links: names of the links that share the value; none for an actuator or allocation parameter.
-        lower, upper: bounds.
+        lower, upper: bounds; equal ones fix the value.
         materials: of which a density must be one's, the lightest first; none if every value within the
             bounds will do.
         joints: names of the joints that share an actuator.
@@ -142,6 +142,11 @@ class DesignParameter:
     def _named_choices(self) -> tuple[tuple[str, float], ...]:
         made_of = ((material.name, material.density) for material in self.materials)
         return (*made_of, *((model.model, model.rated) for model in self.models))
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether there is one value only, so that no genome has a coordinate for it."""
+        return self.lower == self.upper
 
     @property
     def logarithmic(self) -> bool:

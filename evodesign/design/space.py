@@ -35,15 +35,23 @@ TYPICAL = 10.0
 
 @dataclass(frozen=True, slots=True)
 class DesignSpace:
-    """All parameters of a problem, in the order of the genome's coordinates, and the walls of links."""
+    """All parameters of a problem, and the walls of links.
+
+    Programs and trees are given a value of every parameter; genomes have a coordinate for each that is free.
+    """
 
     parameters: tuple[DesignParameter, ...]
     walls: tuple[Wall, ...] = ()
 
     @property
+    def free(self) -> tuple[DesignParameter, ...]:
+        """Those that are not fixed, in the order of the genome's coordinates."""
+        return tuple(parameter for parameter in self.parameters if not parameter.is_fixed)
+
+    @property
     def records(self) -> tuple[Parameter, ...]:
-        """The parameters as they are remembered."""
-        return tuple(parameter.record for parameter in self.parameters)
+        """The free parameters as they are remembered."""
+        return tuple(parameter.record for parameter in self.free)
 
     def check(self, tree: Tree) -> None:
         """Refuse parameters that the tree cannot follow.
@@ -163,7 +171,7 @@ class DesignSpace:
     @property
     def counts(self) -> tuple[int, ...]:
         """How many choices each coordinate of a genome has, 0 for a continuous one."""
-        return tuple(len(parameter.choices) for parameter in self.parameters)
+        return tuple(len(parameter.choices) for parameter in self.free)
 
     def unscaled(self, tree: Tree) -> tuple[float, ...]:
         """The file's robot as a design: multipliers one, densities averaged over groups, usual allocation.
@@ -187,20 +195,24 @@ class DesignSpace:
 
     def values(self, genome: Genome) -> tuple[float, ...]:
         """Parameter values of a genome."""
-        return tuple(design_of(self.records, genome).values())
+        return self.values_of(design_of(self.records, genome))
 
     def genome(self, values: Sequence[float]) -> Genome:
         """The genome of parameter values; coordinates outside [0, 1] mean values outside the bounds.
 
         A value that is no choice becomes the nearest one; who takes values from a user refuses it first.
         """
-        return tuple(
-            parameter.coordinate(value) for parameter, value in zip(self.parameters, values, strict=True)
-        )
+        pairs = zip(self.parameters, values, strict=True)
+        return tuple(parameter.coordinate(value) for parameter, value in pairs if not parameter.is_fixed)
 
     def named(self, values: Sequence[float]) -> Mapping[str, float]:
-        """Parameter values by full name."""
-        return {parameter.name: value for parameter, value in zip(self.parameters, values, strict=True)}
+        """Values of the free parameters by full name: a design as it is logged."""
+        pairs = zip(self.parameters, values, strict=True)
+        return {parameter.name: value for parameter, value in pairs if not parameter.is_fixed}
+
+    def values_of(self, design: Mapping[str, float]) -> tuple[float, ...]:
+        """A value per parameter of a design by name."""
+        return tuple(each.lower if each.is_fixed else design[each.name] for each in self.parameters)
 
 
 @dataclass(frozen=True, slots=True)

@@ -80,11 +80,10 @@ def assessed_gradients(
     design = _Design(problem, sensitivities, tuple(values), result)
     names = dict.fromkeys([*(o.name for o in problem.objectives), *(c.name for c in problem.constraints)])
     found = {name: design.gradient(name) for name in names} | {HEIGHT: design.of_height()}
-    records = problem.space.records
     spans = {
-        place: (p.name, p.slope_at(value))
-        for place, (p, value) in enumerate(zip(records, values, strict=True))
-        if not p.choices
+        place: (p.name, p.record.slope_at(value))
+        for place, (p, value) in enumerate(zip(problem.space.parameters, values, strict=True))
+        if not p.choices and not p.is_fixed
     }
 
     def slopes(gradient: Array) -> dict[str, float]:

@@ -165,8 +165,9 @@ class _Slope:
         design = self.known[_key(point.position)]
         derivative = self._sensitivities.at(design.values, design.result)
         moves = derivative.sensitivities()
-        records = self._problem.space.records
-        ranges = np.array([p.slope_at(value) for p, value in zip(records, design.values, strict=True)])
+        pairs = enumerate(zip(self._problem.space.parameters, design.values, strict=True))
+        free = {place: p.record.slope_at(value) for place, (p, value) in pairs if not p.is_fixed}
+        ranges = np.array([*free.values()])
         relative: dict[str, Array] = {}
         for name in self._aim.weights:
             gradient = _per_range(moves[name], ranges)
@@ -177,7 +178,7 @@ class _Slope:
             (weight * relative[name] for name, weight in self._aim.weights.items()),
             start=np.zeros(len(ranges)),
         )
-        ends = [_turned(derivative.highest, ranges), -_turned(derivative.lowest, ranges)]
+        ends = [_turned(derivative.highest, free), -_turned(derivative.lowest, free)]
         bounds = [
             sign * (np.zeros(len(ranges)) if gradient is None else gradient)
             for constraint in self._problem.constraints
@@ -244,9 +245,16 @@ def _per_range(sensitivity: ObjectiveSensitivity, ranges: Array) -> Array | None
     return None if gradient is None else np.array(list(gradient.values())) * ranges
 
 
-def _turned(derivative: ReachDerivative | NotDifferentiable, ranges: Array) -> Array:
-    """The slope of an end of reach per range; none where it does not exist: evaluations alone guard it."""
-    return np.zeros(len(ranges)) if isinstance(derivative, NotDifferentiable) else derivative.slope * ranges
+def _turned(derivative: ReachDerivative | NotDifferentiable, ranges: Mapping[int, float]) -> Array:
+    """The slope of an end of reach per range; none where it does not exist: evaluations alone guard it.
+
+    Args:
+        derivative: by all parameters.
+        ranges: of the free ones, by their places.
+    """
+    if isinstance(derivative, NotDifferentiable):
+        return np.zeros(len(ranges))
+    return np.array([derivative.slope[place] * of_range for place, of_range in ranges.items()])
 
 
 def _key(position: Array) -> bytes:

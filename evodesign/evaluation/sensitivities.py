@@ -98,7 +98,8 @@ class DesignDerivative:
         problem = self.problem
         names = dict.fromkeys([*(o.name for o in problem.objectives), *(c.name for c in problem.constraints)])
         existing = [name for name in names if objective_value(name, self.result) is not None]
-        around = [self._around(position) for position in range(len(self.values))]
+        parameters = enumerate(problem.space.parameters)
+        around = {p.name: self._around(position) for position, p in parameters if not p.is_fixed}
         return {name: self._sensitivity(name, around) for name in existing}
 
     def _around(self, position: int) -> tuple[float, tuple[DesignResult, ...]]:
@@ -108,20 +109,18 @@ class DesignDerivative:
         return step, tuple(self.moved(count * step * unit) for count in range(-2, 3))
 
     def _sensitivity(
-        self, name: str, around: Sequence[tuple[float, Sequence[DesignResult]]]
+        self, name: str, around: Mapping[str, tuple[float, Sequence[DesignResult]]]
     ) -> ObjectiveSensitivity:
         value = partial(objective_value, name)
         notes = self._notes_of(name)
         gradient: dict[str, float] = {}
-        for parameter, (step, results) in zip(self.problem.space.parameters, around, strict=True):
+        for parameter, (step, results) in around.items():
             found = [x for result in results if (x := value(result)) is not None]
             if len(found) < len(results):
                 return ObjectiveSensitivity(None, tuple(notes))
-            gradient[parameter.name] = five_point(found, step)
+            gradient[parameter] = five_point(found, step)
             if _not_smooth(found):
-                notes.append(
-                    f"its formula has a kink in {parameter.name}, where another value becomes largest"
-                )
+                notes.append(f"its formula has a kink in {parameter}, where another value becomes largest")
         return ObjectiveSensitivity(gradient, tuple(notes))
 
     def _notes_of(self, name: str) -> list[str]:

@@ -68,7 +68,7 @@ def preflight(problem: DesignProblem) -> tuple[Finding, ...]:
         "has shapes": lambda: _shapes(robot.tree),
     }
     for index, parameter in enumerate(space.parameters):
-        if parameter.links or parameter.joints:
+        if (parameter.links or parameter.joints) and not parameter.is_fixed:
             words, value = _other(parameter, space.unscaled(robot.tree)[index])
             items[f"{parameter.name} {words}"] = functools.partial(_changes, problem, equipped, index, value)
     found = [_tried(name, item) for name, item in items.items()]

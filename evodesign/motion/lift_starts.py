@@ -156,7 +156,7 @@ def lift_portfolio(
     def given(genome: Design) -> Design:
         return space.given(space.values(genome), {})
 
-    designs = spread_designs(len(space.parameters), given, held, LOOKED_AT)
+    designs = spread_designs(len(space.free), given, held, LOOKED_AT)
     first = next(designs, None)
     if first is None:
         return NO_STARTS

@@ -195,7 +195,7 @@ class DesignProblem:
             InputError: starts of the joint problem, and a density of materials or a constraint.
         """
         table = self.search
-        if not self.space.parameters:
+        if not self.space.free:
             raise InputError(
                 self.source.path, "design", "a robot and a parameter of it to search", "people alone"
             )
@@ -213,7 +213,7 @@ class DesignProblem:
         gradients = algorithm in GRADIENT_SEARCHES if table.gradients is None else table.gradients
         return SearchSettings(
             algorithm=algorithm,
-            dimension=len(self.space.parameters),
+            dimension=len(self.space.free),
             objectives=len(self.objectives),
             population=population,
             seed=table.seed if seed is None else seed,

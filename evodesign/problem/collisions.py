@@ -97,7 +97,7 @@ def _as_everyone(agent: Agent, agents: Collection[Agent]) -> Agent:
 
 def _designs(space: DesignSpace) -> Iterator[tuple[float, ...]]:
     """Some designs, with the least and the largest one of all."""
-    count = len(space.parameters)
+    count = len(space.free)
 
     def given(genome: tuple[float, ...]) -> tuple[float, ...]:
         return space.given(space.values(genome), {})

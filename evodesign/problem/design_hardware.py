@@ -103,7 +103,9 @@ def _actuator(
         raise InputError(source.path, key, f"one of {', '.join(ways)}", " and ".join(given) or "none")
     for kind, way in ((ParameterKind.ACTUATOR, "rated_torque_n_m"), (ParameterKind.MARGIN, "margin")):
         if way in given:
-            ends = _rising(getattr(table, way), f"{key}.{way}", source)
+            ends = _ends(getattr(table, way), f"{key}.{way}", source)
+            if kind is ParameterKind.MARGIN and ends[0] < 1.0:
+                raise InputError(source.path, f"{key}.{way}", "at least 1", f"{ends[0]:g}")
             gear = _gear(table.gear, f"{key}.gear", source)
             return DesignParameter(kind, table.name, (), *ends, joints=table.joints, gear=gear)
     if table.gear is not None:
@@ -122,6 +124,11 @@ def _gear(name: str | None, key: str, source: ProblemSource) -> Gear:
     if name not in kinds:
         raise InputError(source.path, key, f"a gear with a law: {', '.join(kinds)}", f"'{name}'")
     return Gear(name)
+
+
+def _ends(given: float | tuple[float, float], key: str, source: ProblemSource) -> tuple[float, float]:
+    """Bounds that are given, or a value twice."""
+    return _rising(given, key, source) if isinstance(given, tuple) else (given, given)
 
 
 def _rising(pair: tuple[float, float], key: str, source: ProblemSource) -> tuple[float, float]:

@@ -14,8 +14,6 @@ from msgspec import Meta
 from evodesign.hardware.mounting import Mount
 from evodesign.problem.table import Name, Point, Positive, Share, Table
 
-Margin = Annotated[float, Meta(ge=1.0)]
-
 
 class LengthTable(Table, frozen=True):
     """`[[design.length]]`: a length multiplier that links share.
@@ -144,7 +142,8 @@ class ActuatorTable(Table, frozen=True):
         joints: joints that have this actuator.
         rated_torque_n_m: bounds of the rated torque.
         models: names of catalogue rows or `[[actuator]]` tables to choose from.
-        margin: bounds of the factor by which the actuator exceeds what postures and load cases ask of it.
+        margin: factor of at least 1 by which the actuator exceeds what postures and load cases ask of it, or
+            bounds of it. A number since 0.3.
         mount: makes it a body: the housing's cylinder about each joint's axis, `inline` in the joint or
             `offset` to one side; without it, a ball of its mass. Since 0.3.
         gear: whose scaling law it follows: `planetary` or `strain_wave`; without it, `planetary`. Since
@@ -155,7 +154,7 @@ class ActuatorTable(Table, frozen=True):
     joints: Annotated[tuple[Name, ...], Meta(min_length=1)]
     rated_torque_n_m: tuple[Positive, Positive] | None = None
     models: tuple[Name, ...] | None = None
-    margin: tuple[Margin, Margin] | None = None
+    margin: float | tuple[float, float] | None = None  # as of `WallTable.thickness_m`
     mount: Mount | None = None
     gear: Name | None = None
 

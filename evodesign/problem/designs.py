@@ -80,12 +80,12 @@ def read_designs(text: str, source: str, space: DesignSpace, tree: Tree) -> dict
         if entry.name in designs:
             raise InputError(source, f"{key}.name", "a unique name", f"'{entry.name}' twice")
         given = _given(entry, source, key, space)
-        designs[entry.name] = tuple({**unscaled, **given}.values())
+        designs[entry.name] = space.values_of({**unscaled, **given})
     return designs
 
 
 def _given(entry: DesignEntry, source: str, key: str, space: DesignSpace) -> dict[str, float]:
-    known = {parameter.name: parameter for parameter in space.parameters}
+    known = {parameter.name: parameter for parameter in space.free}
     given: dict[str, float] = {}
     for kind, table in TABLES.items():
         values: dict[str, float] = getattr(entry, table)
@@ -174,7 +174,7 @@ def designs_text(name: str, designs: Mapping[str, Sequence[float]], space: Desig
             given = [
                 f"{_quoted(parameter.group)} = {float(value)!r}"
                 for parameter, value in zip(space.parameters, values, strict=True)
-                if parameter.kind is kind
+                if parameter.kind is kind and not parameter.is_fixed
             ]
             if given:
                 lines.append(f"{table} = {{ {', '.join(given)} }}")

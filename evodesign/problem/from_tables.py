@@ -140,7 +140,7 @@ def _check_parameter(
     tree: Tree,
     seen: dict[tuple[ParameterKind, str], str],
 ) -> None:
-    if parameter.lower >= parameter.upper:
+    if parameter.lower >= parameter.upper and parameter.kind is not ParameterKind.MARGIN:
         wanted = f"less than upper ({parameter.upper:g})"
         raise InputError(source.path, f"{key}.lower", wanted, f"{parameter.lower:g}")
     for position, link in enumerate(parameter.links):

@@ -90,7 +90,7 @@ class OpenedDesign:
         assessment = self.evaluation.assessment
         design = assessment.design  # what a start of the joint problem led to, not its genome
         space = problem.space
-        values = space.given([design[each.name] for each in space.parameters], assessment.rated_torques)
+        values = space.given(space.values_of(design), assessment.rated_torques)
         return SceneSet.of(problem.scenes, problem.space.resized(problem.scene.designed_tree, values))
 
     def lifts(
@@ -100,10 +100,10 @@ class OpenedDesign:
         from evodesign.evaluation.factory import evaluator_of
         from evodesign.evaluation.lifts import Lifts
 
-        problem, values = self.rebuilt.problem, self.evaluation.assessment.design
+        problem = self.rebuilt.problem
         evaluator = evaluator_of(problem, jobs, progress, [asked])
-        given = [values[each.name] for each in problem.space.parameters]
-        return Lifts(evaluator, evaluator.known).solve(given, asked)
+        values = problem.space.values_of(self.evaluation.assessment.design)
+        return Lifts(evaluator, evaluator.known).solve(values, asked)
 
     def spread(self) -> PeopleSpread | None:
         """Of the run's designs over samples of people; None where this one has none."""

@@ -209,3 +209,20 @@ def test_gradients_go_through_the_sizes(
             wanted = slope * parameter.slope_at(DESIGN[position])
             scale = max(abs(kinds[name].value(result) or 0.0), abs(wanted))
             assert np.abs(gradients[name][parameter.name] - wanted) <= 1e-4 * scale, (name, parameter.name)
+
+
+def test_with_a_fixed_margin_the_others_have_the_same_gradients_and_it_has_none(
+    sized: DesignProblem, inner: Evaluator, result: DesignResult
+) -> None:
+    parameters = [*sized.space.parameters[:4], replace(sized.space.parameters[4], lower=1.5, upper=1.5)]
+    fixed = replace(sized, space=DesignSpace(tuple(parameters)))
+    bounded, found = (
+        assessed_gradients(each, Sensitivities(each, inner=inner.inner), DESIGN, result)
+        for each in (sized, fixed)
+    )
+    for name in NAMES[:-1]:
+        wanted = {key: value for key, value in bounded.values[name].items() if key != "margin.knee"}
+        assert found.values[name] == pytest.approx(wanted, rel=1e-9, abs=1e-12), name
+    moved = Sensitivities(fixed, inner=inner.inner).at(DESIGN, result).sensitivities()["mass"].gradient
+    assert moved is not None
+    assert set(moved) == {each.name for each in fixed.space.records}

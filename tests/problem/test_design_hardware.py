@@ -79,6 +79,24 @@ def test_a_rated_torque_has_a_logarithmic_scale() -> None:
     assert model_json(problem)["parameters"][-1]["joints"] == ["l_shoulder", "r_shoulder"]
 
 
+def test_a_margin_that_is_a_number_has_no_coordinate_in_a_genome() -> None:
+    problem, bounded = (small(SHOULDER + f"margin = {margin}\n") for margin in ("1.5", "[1.0, 4.0]"))
+    space, tree = problem.space, problem.scene.robot.tree
+    assert space.records == bounded.space.records[:-1]
+    assert problem.settings().dimension == len(space.records) == len(space.counts)
+    genome = tuple(0.1 * (1 + place) for place in range(len(space.records)))
+    values = space.values(genome)
+    assert values == (*bounded.space.values((*genome, 0.7))[:-1], 1.5)
+    assert space.genome(values) == pytest.approx(genome)
+    assert space.unscaled(tree)[-1] == 1.5
+    assert set(space.named(values)) == {each.name for each in space.records}
+    assert space.values_of(space.named(values)) == values
+    text = designs_text("one", {"a": values}, space, "")
+    assert read_designs(text, "designs.toml", space, tree)["a"] == pytest.approx(values)
+    with pytest.raises(InputError, match="one of the problem's margin parameters"):
+        read_designs(text + "margin = { shoulder = 2.0 }\n", "designs.toml", space, tree)
+
+
 @pytest.mark.parametrize("way", ["rated_torque_n_m = [2.0, 32.0]\n", "margin = [1.0, 4.0]\n"])
 def test_an_actuator_of_any_size_follows_the_law_of_its_gear(way: str) -> None:
     (parameter,) = (p for p in small(SHOULDER + way + 'gear = "strain_wave"\n').space.parameters if p.joints)
@@ -180,7 +198,9 @@ def test_designs_name_torques_walls_and_models() -> None:
         (SHOULDER + MODELS + OWN.replace('"own"', '"RS04"'), ["actuator[0].model", "in the catalogue"]),
         (SHOULDER + SIZES + SPIN.replace('["spin"]', '["l_shoulder"]') + SIZES, ["a joint in one actuator"]),
         (SHOULDER.replace("l_shoulder", "l_sholder") + SIZES, ["joints[0]", "did you mean 'l_shoulder'?"]),
-        (SHOULDER + "margin = [0.5, 2.0]\n", ["design.actuator[0].margin", ">= 1.0"]),
+        (SHOULDER + "margin = [0.5, 2.0]\n", ["design.actuator[0].margin", "at least 1", "0.5"]),
+        (SHOULDER + "margin = 0.9\n", ["design.actuator[0].margin", "at least 1", "0.9"]),
+        (SHOULDER + "margin = [2.0, 2.0]\n", ["design.actuator[0].margin", "a rising pair"]),
         (
             SHOULDER + SIZES + 'gear = "cycloidal"\n',
             ["design.actuator[0].gear", "a gear with a law: planetary, strain_wave", "'cycloidal'"],

@@ -96,7 +96,7 @@ def _sensitivity_table(
     problem: DesignProblem, sensitivities: Mapping[str, ObjectiveSensitivity]
 ) -> FittedTable:
     """The parameters that move each objective or constraint most, for equal shares of their ranges."""
-    ranges = {parameter.name: parameter.upper - parameter.lower for parameter in problem.space.parameters}
+    ranges = {parameter.name: parameter.upper - parameter.lower for parameter in problem.space.free}
     columns = names("objective" if not problem.constraints else "quantity", "strongest parameters")
     table = titled("what 1 % more of a parameter's range changes", columns)
     shown_names = {objective.name: heading(objective) for objective in problem.objectives}

@@ -106,7 +106,7 @@ class _Finder:
                 return space.given(space.values(tuple(map(of, point))), {})
 
             count = max(DESIGNS, FEWEST * parts)
-            every = spread_designs(len(space.parameters), given, built, LOOKED_AT * count)
+            every = spread_designs(len(space.free), given, built, LOOKED_AT * count)
             return [*islice(every, count)][part::parts]
 
         self._designs = [*own(float), *own(lambda place: float(round(place)))]

@@ -118,7 +118,7 @@ def _designs(setting: PrecomputeSetting, scene: Scene, solvers: SolverCache) -> 
     own = setting.of(scene, BUDGET.briefly(setting.options))
     reach = ReachProblem(own, scene.agents[0].name, symmetric=setting.symmetric, solvers=solvers)
     every = spread_designs(
-        len(space.parameters),
+        len(space.free),
         lambda genome: space.given(space.values(genome), {}),
         built,
         LOOKED_AT * LEARNED_FROM,

@@ -274,8 +274,7 @@ def _design(
         return rounded(DesignContent(cases=cases))
     problem = known.problem
     space, assessment = problem.space, evaluation.assessment
-    design = [assessment.design[parameter.name] for parameter in space.parameters]
-    values = space.given(design, assessment.rated_torques)
+    values = space.given(space.values_of(assessment.design), assessment.rated_torques)
     links, joints = changes(problem, values)
     robot = problem.space.resized(problem.scene.designed_tree, values)
     postures = shown_cases(detail.cases)
