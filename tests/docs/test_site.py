@@ -48,7 +48,7 @@ def site(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place / "html"
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def tab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
     with browser(tmp_path_factory.mktemp("profile")) as opened:
         yield opened
@@ -66,7 +66,6 @@ def test_the_search_finds_what_people_look_for_and_no_change(site: Path, tab: Ta
 
 @pytest.mark.slow
 def test_pages_set_formulas_and_load_nothing_from_elsewhere(site: Path, tab: Tab) -> None:
-    tab.events.clear()
     for page in ("index", "docs/model", "docs/recipes/index"):
         tab.open(f"file://{site}/{page}.html")
     assert all(url.startswith("file:") for url in tab.requests())
