@@ -8,6 +8,7 @@ is refused.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
@@ -104,8 +105,8 @@ def _actuator(
     for kind, way in ((ParameterKind.ACTUATOR, "rated_torque_n_m"), (ParameterKind.MARGIN, "margin")):
         if way in given:
             ends = _ends(getattr(table, way), f"{key}.{way}", source)
-            if kind is ParameterKind.MARGIN and ends[0] < 1.0:
-                raise InputError(source.path, f"{key}.{way}", "at least 1", f"{ends[0]:g}")
+            if kind is ParameterKind.MARGIN and not 1.0 <= ends[0] <= ends[1] < math.inf:
+                raise InputError(source.path, f"{key}.{way}", "numbers of at least 1", f"{ends[0]:g} to {ends[1]:g}")
             gear = _gear(table.gear, f"{key}.gear", source)
             return DesignParameter(kind, table.name, (), *ends, joints=table.joints, gear=gear)
     if table.gear is not None:

@@ -198,8 +198,11 @@ def test_designs_name_torques_walls_and_models() -> None:
         (SHOULDER + MODELS + OWN.replace('"own"', '"RS04"'), ["actuator[0].model", "in the catalogue"]),
         (SHOULDER + SIZES + SPIN.replace('["spin"]', '["l_shoulder"]') + SIZES, ["a joint in one actuator"]),
         (SHOULDER.replace("l_shoulder", "l_sholder") + SIZES, ["joints[0]", "did you mean 'l_shoulder'?"]),
-        (SHOULDER + "margin = [0.5, 2.0]\n", ["design.actuator[0].margin", "at least 1", "0.5"]),
+        (SHOULDER + "margin = [0.5, 2.0]\n", ["design.actuator[0].margin", "of at least 1", "0.5"]),
         (SHOULDER + "margin = 0.9\n", ["design.actuator[0].margin", "at least 1", "0.9"]),
+        (SHOULDER + "margin = nan\n", ["design.actuator[0].margin", "nan"]),
+        (SHOULDER + "margin = inf\n", ["design.actuator[0].margin", "inf"]),
+        (SHOULDER + "margin = [nan, 2.0]\n", ["design.actuator[0].margin", "nan"]),
         (SHOULDER + "margin = [2.0, 2.0]\n", ["design.actuator[0].margin", "a rising pair"]),
         (
             SHOULDER + SIZES + 'gear = "cycloidal"\n',
