@@ -106,7 +106,8 @@ def _actuator(
         if way in given:
             ends = _ends(getattr(table, way), f"{key}.{way}", source)
             if kind is ParameterKind.MARGIN and not 1.0 <= ends[0] <= ends[1] < math.inf:
-                raise InputError(source.path, f"{key}.{way}", "numbers of at least 1", f"{ends[0]:g} to {ends[1]:g}")
+                found = f"{ends[0]:g} to {ends[1]:g}"
+                raise InputError(source.path, f"{key}.{way}", "numbers of at least 1", found)
             gear = _gear(table.gear, f"{key}.gear", source)
             return DesignParameter(kind, table.name, (), *ends, joints=table.joints, gear=gear)
     if table.gear is not None:
