@@ -6,7 +6,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from evodesign.hardware.actuators import PowerLaw, actuator_law, actuator_of_row, gears_with_a_law
+from evodesign.hardware.actuators import (
+    PowerLaw,
+    actuator_law,
+    actuator_of_row,
+    friction_law,
+    gears_with_a_law,
+)
 from evodesign.hardware.catalogue import CatalogueRow, Gear, catalogue, catalogue_sources
 
 DOCS = Path(__file__).parent
@@ -84,6 +90,10 @@ def law_table() -> str:
             power = "" if law.exponent == 1.0 else f"^{law.exponent:.3f}"
             formula = f"{law.factor:.3g} {by}{power}"
             rows.append((gear, words, formula, f"x/÷ {law.scatter:.2f}", str(law.count)))
+        if friction := friction_law(gear):
+            formula = f"{friction.factor:.3g} rated^{friction.exponent:.3f}"
+            words = "friction torque [N m]"
+            rows.append((gear, words, formula, f"x/÷ {friction.scatter:.2f}", str(friction.count)))
     return table(("gear", "quantity", "law", "one standard deviation", "rows"), rows)
 
 

@@ -20,8 +20,9 @@ from enum import StrEnum
 
 from evodesign.body.material import Material
 from evodesign.body.placement import Scalar
-from evodesign.hardware.actuators import Actuator, ActuatorLaw, actuator_among, actuator_law
+from evodesign.hardware.actuators import Actuator, ActuatorLaw, PowerLaw, actuator_among, actuator_law
 from evodesign.hardware.catalogue import Gear
+from evodesign.hardware.friction import GearFriction
 from evodesign.hardware.heat import Duty
 from evodesign.hardware.mounting import Mounting
 from evodesign.records import Parameter, middle_of
@@ -110,6 +111,7 @@ class DesignParameter:
         mountings: of the actuator at each of its joints; none where it is a ball.
         gear: of an actuator of any size, whose law it follows.
         duty: in what rhythm an actuator holds; None where nobody says.
+        friction: by rated torque, of the gear of an actuator of any size; None: not reckoned with.
         keeps_mass: whether links keep their masses whatever their length, and not their densities.
     """
 
@@ -126,6 +128,7 @@ class DesignParameter:
     mountings: tuple[Mounting, ...] = ()
     gear: Gear = Gear.PLANETARY
     duty: Duty | None = None
+    friction: PowerLaw | None = None
     keeps_mass: bool = False
 
     @property
@@ -198,6 +201,8 @@ class DesignParameter:
             found = replace(self.law.at(rated), holds=False)
         else:
             found = actuator_among(self.models, rated) if self.models else self.law.at(rated)
+        if self.friction is not None:
+            found = replace(found, friction=GearFriction(self.friction(rated)))
         return found if self.duty is None else replace(found, duty=self.duty)
 
     def actuators(self, rated: Scalar) -> dict[str, Actuator]:

@@ -2,7 +2,8 @@
 
     {"joints": {joint: {"actuator": group, "model": name or null, "rated_torque_n_m", "peak_torque_n_m",
                         "mass_kg", "price_eur": or null, "asked_n_m", "asked_by": case,
-                        "share": of rated or peak torque, "loss_w": largest copper loss of the lift}},
+                        "share": of rated or peak torque, "loss_w": largest copper loss of the lift,
+                        "friction_torque_n_m": that turns it without current, or null}},
      "links": {link: {"material": name, "wall_m", "mass_kg": without actuators,
                       "safety_factor": or null, "safety_case": case of the lift, or null}},
      "mass_kg": {"actuators", "structure", "rest", "total"},
@@ -103,13 +104,13 @@ def _alone(robot: Agent, stances: Sequence[StanceCase], tree: Tree) -> Iterator[
 
 
 def _row(joint: str, actuator: Actuator, asked: Sequence[Asked]) -> dict[str, Any]:
-    most, by, share, loss = 0.0, "", 0.0, 0.0
+    most, by, share, loss, friction = 0.0, "", 0.0, 0.0, actuator.friction
     for name, torques, briefly in asked:
         torque = abs(torques.get(joint, 0.0))
         limit = float(actuator.peak if briefly else actuator.rated)
         if torque / limit > share:
             most, by, share = torque, name, torque / limit
-        loss = loss if briefly else max(loss, float(actuator.loss(torque)))
+        loss = loss if briefly else max(loss, actuator.loss(torque))
     return {
         "model": actuator.model or None,
         "rated_torque_n_m": float(actuator.rated),
@@ -120,6 +121,7 @@ def _row(joint: str, actuator: Actuator, asked: Sequence[Asked]) -> dict[str, An
         "asked_by": by,
         "share": share,
         "loss_w": loss,
+        "friction_torque_n_m": None if friction is None else float(friction.backdrive),
     }
 
 

@@ -11,8 +11,8 @@ An actuator is motor, gear, housing and drive in one piece. Its figures are thos
                         diameter, length = a mass^b
 
 with k_t the torque at the output per ampere (rms) of phase current, R the resistance of one of three phases
-in star connection, N the gear's ratio. The gear's losses are in k_t; that its friction helps a motor to hold
-is left out, so the loss is rather too high.
+in star connection, N the gear's ratio. Without a `friction` the gear has none: the loss of holding is rather
+too high, and that of lifting rather too low.
 
 The laws are least squares in the logarithms, one for each kind of gear. That of planetary gears is fitted to
 seven actuators of ratio 12 and above whose maker gives all figures. Windup is that of gears by themselves, as
@@ -28,7 +28,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from functools import cache
 from itertools import pairwise
 from operator import attrgetter
@@ -40,6 +40,7 @@ from evodesign.body.placement import Placement, Scalar, Vector
 from evodesign.body.shape import Solid, Sphere
 from evodesign.errors import InputError
 from evodesign.hardware.catalogue import CatalogueRow, Gear, catalogue, gearheads
+from evodesign.hardware.friction import GearFriction, MotorTorque
 from evodesign.hardware.heat import Duty
 from evodesign.hardware.mounting import Mounting
 
@@ -71,6 +72,7 @@ class Actuator:
         housing: diameter and length of the cylinder around it [m]; None where they follow from the mass.
         mounting: where that cylinder lies; None for a ball of its mass in the joint, which is no body.
         duty: in what rhythm it holds; None where nobody says.
+        friction: of its gear; None: not reckoned with.
     """
 
     rated: Scalar
@@ -86,6 +88,7 @@ class Actuator:
     housing: tuple[Scalar, Scalar] | None = None
     mounting: Mounting | None = None
     duty: Duty | None = None
+    friction: GearFriction | None = None
 
     @property
     def size(self) -> tuple[Scalar, Scalar]:
@@ -100,9 +103,20 @@ class Actuator:
         """Torque that its winding bears in its duty, at most the rated one [N m]."""
         return self.rated if self.duty is None else self.rated * self.duty.derating
 
-    def loss(self, torque: Scalar) -> Scalar:
+    def motor(self, torque: float, speed: float | None = None) -> MotorTorque:
+        """The torque of its motor in a joint that gives a torque [N m] and turns at a speed [rad/s].
+
+        Args:
+            torque: at the joint.
+            speed: of the joint; None: it holds still.
+        """
+        if self.friction is None:
+            return MotorTorque(torque, 1.0)
+        return self.friction.holding(torque) if speed is None else self.friction.turning(torque, speed)
+
+    def loss(self, torque: float) -> float:
         """Copper loss [W] that holding a torque [N m] takes."""
-        return (torque / self.motor_constant) ** 2
+        return float((self.motor(torque).value / self.motor_constant) ** 2)
 
     def windup(self, torque: Scalar) -> Scalar:
         """Angle [rad] by which the gear gives way under a torque [N m]."""
@@ -210,6 +224,27 @@ def actuator_law(gear: Gear | str = Gear.PLANETARY) -> ActuatorLaw:
 
 
 @cache
+def friction_law(gear: Gear | str = Gear.PLANETARY) -> PowerLaw | None:
+    """Torque [N m] that turns an actuator without current, by rated torque [N m]; None of too few rows.
+
+    It is fitted to all rows of the kind that have both.
+    """
+    rows = [row for row in catalogue().values() if row.gear == gear]
+    return _fit(rows, _RATED, attrgetter("friction_torque_n_m"))
+
+
+def friction_of_row(row: CatalogueRow) -> GearFriction | None:
+    """The friction of a row: its own figure, else that of the law at its rated torque; None without a law."""
+    gear = Gear.STRAIN_WAVE if row.gear is Gear.STRAIN_WAVE else Gear.PLANETARY
+    backdrive, law = row.friction_torque_n_m, friction_law(gear)
+    if backdrive is None and law is not None:
+        backdrive = float(law(actuator_of_row(row).rated))
+    if backdrive is None:
+        return None
+    return GearFriction(backdrive, row.load_friction, row.viscous_friction_n_m_s_per_rad)
+
+
+@cache
 def gears_with_a_law() -> tuple[str, ...]:
     """The kinds of gear of which the catalogue has rows enough."""
     return tuple(kind.value for kind in Gear if None not in _laws(kind).values())
@@ -294,7 +329,11 @@ def actuator_among(models: Sequence[Actuator], rated: Scalar) -> Actuator:
     names = ("peak", "mass", "motor_constant", "inertia", "stiffness", "speed")
     housing = figure_of([model.size[0] for model in models]), figure_of([model.size[1] for model in models])
     figures = {name: figure_of([getattr(model, name) for model in models]) for name in names}
-    return replace(models[0], rated=rated, model="", price=None, housing=housing, **figures)
+    each = [astuple(model.friction) for model in models if model.friction is not None]
+    friction = GearFriction(*map(figure_of, zip(*each, strict=True))) if each else None
+    return replace(
+        models[0], rated=rated, model="", price=None, housing=housing, friction=friction, **figures
+    )
 
 
 def mounted_solid(actuator: Actuator, link_from_joint: Placement, axis: Vector) -> Solid:

@@ -64,6 +64,8 @@ class CatalogueRow(Record, frozen=True, kw_only=True):
         no_load_speed_rpm: speed without load.
         max_speed_rpm: highest speed allowed, where none without load is given. Since 0.3.
         friction_torque_n_m: torque that turns the output without current. Since 0.3.
+        load_friction: what friction grows by with the torque that the gear carries. Since 0.3.
+        viscous_friction_n_m_s_per_rad: what friction grows by with the speed of the output. Since 0.3.
         no_load_loss_w: loss without load. Since 0.3.
         thermal_resistance_k_per_w: thermal resistance of the winding against the air. Since 0.3.
         thermal_time_constant_s: thermal time constant of the winding. Since 0.3.
@@ -93,6 +95,8 @@ class CatalogueRow(Record, frozen=True, kw_only=True):
     no_load_speed_rpm: Figure | None = None
     max_speed_rpm: Figure | None = None
     friction_torque_n_m: Figure | None = None
+    load_friction: Annotated[float, Meta(ge=0.0, lt=1.0)] = 0.0
+    viscous_friction_n_m_s_per_rad: Annotated[float, Meta(ge=0.0)] = 0.0
     no_load_loss_w: Figure | None = None
     thermal_resistance_k_per_w: Figure | None = None
     thermal_time_constant_s: Figure | None = None

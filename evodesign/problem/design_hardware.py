@@ -17,8 +17,16 @@ from evodesign.body.material import Material
 from evodesign.design.parameter import DesignParameter, ParameterKind
 from evodesign.design.walls import Wall
 from evodesign.errors import InputError, nearest_name
-from evodesign.hardware.actuators import Actuator, actuator_of_row, gears_with_a_law
+from evodesign.hardware.actuators import (
+    Actuator,
+    PowerLaw,
+    actuator_of_row,
+    friction_law,
+    friction_of_row,
+    gears_with_a_law,
+)
 from evodesign.hardware.catalogue import CatalogueRow, Gear, catalogue
+from evodesign.hardware.friction import GearFriction
 from evodesign.hardware.heat import Duty
 from evodesign.problem.design_space import known_materials
 from evodesign.problem.design_table import ActuatorTable, WallTable
@@ -27,6 +35,8 @@ from evodesign.problem.mountings import mountings_of
 from evodesign.problem.unknown_names import refuse_unknown
 from evodesign.records import ProblemSource
 from evodesign.tree.model import Tree
+
+GEAR_FRICTION = "hardware.gear_friction"
 
 
 def actuator_parameters(tables: ProblemFile, source: ProblemSource, tree: Tree) -> list[DesignParameter]:
@@ -47,7 +57,7 @@ def actuator_parameters(tables: ProblemFile, source: ProblemSource, tree: Tree) 
                     source.path, where, "a joint in one actuator", f"'{joint}' also in {seen[joint]}"
                 )
             seen[joint] = key
-        parameter = _actuator(table, key, source, known)
+        parameter = _actuator(table, key, source, known, tables.hardware.gear_friction)
         found.append(replace(parameter, mountings=mountings_of(table, key, source, tree), duty=duty))
     return found
 
@@ -96,7 +106,7 @@ def _known_actuators(tables: ProblemFile, source: ProblemSource) -> Mapping[str,
 
 
 def _actuator(
-    table: ActuatorTable, key: str, source: ProblemSource, known: Mapping[str, CatalogueRow]
+    table: ActuatorTable, key: str, source: ProblemSource, known: Mapping[str, CatalogueRow], friction: bool
 ) -> DesignParameter:
     ways = ("rated_torque_n_m", "models", "margin")
     given = [way for way in ways if getattr(table, way) is not None]
@@ -109,11 +119,12 @@ def _actuator(
                 found = f"{ends[0]:g} to {ends[1]:g}"
                 raise InputError(source.path, f"{key}.{way}", "numbers of at least 1", found)
             gear = _gear(table.gear, f"{key}.gear", source)
-            return DesignParameter(kind, table.name, (), *ends, joints=table.joints, gear=gear)
+            law = _friction_law(gear, source) if friction else None
+            return DesignParameter(kind, table.name, (), *ends, joints=table.joints, gear=gear, friction=law)
     if table.gear is not None:
         wanted = "no gear beside models, which have their own"
         raise InputError(source.path, f"{key}.gear", wanted, f"'{table.gear}'")
-    models = _models(table.models or (), f"{key}.models", source, known)
+    models = _models(table.models or (), f"{key}.models", source, known, friction)
     ends = (models[0].rated, models[-1].rated)
     return DesignParameter(ParameterKind.ACTUATOR, table.name, (), *ends, joints=table.joints, models=models)
 
@@ -128,6 +139,24 @@ def _gear(name: str | None, key: str, source: ProblemSource) -> Gear:
     return Gear(name)
 
 
+def _friction_law(gear: Gear, source: ProblemSource) -> PowerLaw:
+    """Of gears of a kind."""
+    law = friction_law(gear)
+    if law is None:
+        kinds = ", ".join(kind for kind in gears_with_a_law() if friction_law(kind))
+        wanted = f"gears whose friction the catalogue knows: {kinds}, or models with a friction_torque_n_m"
+        raise InputError(source.path, GEAR_FRICTION, wanted, f"'{gear}'")
+    return law
+
+
+def _friction(row: CatalogueRow, key: str, source: ProblemSource) -> GearFriction:
+    found = friction_of_row(row)
+    if found is None:
+        wanted = f"models whose friction is known, as {GEAR_FRICTION} is true"
+        raise InputError(source.path, key, wanted, f"'{row.model}', without a friction_torque_n_m")
+    return found
+
+
 def _ends(given: float | tuple[float, float], key: str, source: ProblemSource) -> tuple[float, float]:
     """Bounds that are given, or a value twice."""
     return _rising(given, key, source) if isinstance(given, tuple) else (given, given)
@@ -140,7 +169,11 @@ def _rising(pair: tuple[float, float], key: str, source: ProblemSource) -> tuple
 
 
 def _models(
-    names: Sequence[str], key: str, source: ProblemSource, known: Mapping[str, CatalogueRow]
+    names: Sequence[str],
+    key: str,
+    source: ProblemSource,
+    known: Mapping[str, CatalogueRow],
+    friction: bool,
 ) -> tuple[Actuator, ...]:
     """Models by name, the weakest first."""
     if len(names) < 2:
@@ -152,7 +185,12 @@ def _models(
             raise InputError(source.path, where, wanted, f"'{name}'{nearest_name(name, known)}")
         if name in names[:position]:
             raise InputError(source.path, where, "each model once", f"'{name}' twice")
-    models = sorted((actuator_of_row(known[name]) for name in names), key=lambda model: model.rated)
+    rows = [known[name] for name in names]
+    chosen = [
+        replace(actuator_of_row(row), friction=_friction(row, key, source) if friction else None)
+        for row in rows
+    ]
+    models = sorted(chosen, key=lambda model: model.rated)
     for one, other in pairwise(models):
         if one.rated == other.rated:
             found = f"'{one.model}' and '{other.model}', both of {one.rated:g} N m"

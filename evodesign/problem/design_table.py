@@ -240,13 +240,16 @@ class LoadCaseTable(Table, frozen=True):
 
 
 class HardwareTable(Table, frozen=True):
-    """`[hardware]`: what hollow links keep.
+    """`[hardware]`: what hollow links keep, and what gears do.
 
     Attributes:
         non_structural_share: share of a hollow link's mass in the file that stays besides its wall.
+        gear_friction: whether friction in the gears of `[[design.actuator]]` counts: it helps motors to hold,
+            and they work against it in a lift. Since 0.3.
     """
 
     non_structural_share: Share = 0.3
+    gear_friction: bool = False
 
 
 class DutyTable(Table, frozen=True):

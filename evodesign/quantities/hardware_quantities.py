@@ -1,6 +1,7 @@
 """Quantities of a robot whose actuators a design chooses.
 
-    holding_power    sum over actuators of (tau / K)^2 [W], K the motor constant at the output
+    holding_power    sum over actuators of (m / K)^2 [W], K the motor constant at the output, m the motor's
+                     torque: the joint's, less what friction of the gear bears (`hardware.friction`)
     actuator_mass    sum of the actuators' masses [kg]
     hand_deflection  how far the hands give way under the load: bending, twist and windup [mm]
     least_safety_factor  of all links with walls and cases, against yield and buckling
@@ -17,6 +18,7 @@ from __future__ import annotations
 import numpy as np
 
 from evodesign.body.placement import Placement
+from evodesign.hardware.friction import MotorTorque
 from evodesign.hardware.heat import RATED_AIR
 from evodesign.mechanics import link_beams
 from evodesign.mechanics.agent import Agent
@@ -40,18 +42,34 @@ NEED_WALLS = ("least_safety_factor",)
 
 
 def copper_loss(robot: Agent, posture: AgentPosture) -> float:
-    """Copper loss of holding the posture [W]."""
-    torques, actuators = posture.torques, actuators_of(robot.tree)
-    return float(sum(each.loss(torques[joint]) for joint, each in actuators.items() if joint in torques))
+    """Copper loss in the posture [W]."""
+    return float(sum((motor.value / k) ** 2 for motor, k in _motors(robot, posture).values()))
 
 
 def power_by_torque(robot: Agent, posture: AgentPosture) -> dict[str, float]:
-    """D P / d tau = 2 tau / K^2."""
-    torques, actuators = posture.torques, actuators_of(robot.tree)
+    """D P / d tau = 2 m / K^2 dm / d tau."""
+    motors = _motors(robot, posture)
+    return {joint: 2.0 * motor.value / k**2 * motor.by_torque for joint, (motor, k) in motors.items()}
+
+
+def power_by_speed(robot: Agent, posture: AgentPosture) -> dict[str, float]:
+    """D P / d w = 2 m / K^2 dm / d w."""
+    motors = _motors(robot, posture)
+    return {joint: 2.0 * motor.value / k**2 * motor.by_speed for joint, (motor, k) in motors.items()}
+
+
+def motor_torque(robot: Agent, posture: AgentPosture, joint: str) -> MotorTorque:
+    """The torque of a joint's motor in a posture [N m]: the joint's where no actuator is known."""
+    actuator, torque = actuators_of(robot.tree).get(joint), posture.torques[joint]
+    return MotorTorque(torque, 1.0) if actuator is None else actuator.motor(torque, posture.speeds.get(joint))
+
+
+def _motors(robot: Agent, posture: AgentPosture) -> dict[str, tuple[MotorTorque, float]]:
+    """The torque of each actuator's motor, and its constant K [N m/W^0.5]."""
     return {
-        joint: float(2.0 * torques[joint] / each.motor_constant**2)
-        for joint, each in actuators.items()
-        if joint in torques
+        joint: (motor_torque(robot, posture, joint), float(each.motor_constant))
+        for joint, each in actuators_of(robot.tree).items()
+        if joint in posture.torques
     }
 
 
@@ -78,9 +96,9 @@ def _windings(robot: Agent, posture: AgentPosture) -> dict[str, tuple[float, flo
     found = {}
     for joint, each in actuators_of(robot.tree).items():
         if each.duty is not None and joint in posture.torques:
-            rated, torque = float(each.rated), posture.torques[joint]
-            share = abs(torque) / rated
-            slope = np.copysign(each.duty.slope(share) / rated, torque)
+            rated, motor = float(each.rated), each.motor(posture.torques[joint])
+            share = abs(motor.value) / rated
+            slope = np.copysign(each.duty.slope(share) / rated, motor.value) * motor.by_torque
             found[joint] = each.duty.temperature(share), float(slope)
     return found
 

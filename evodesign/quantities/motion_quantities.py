@@ -1,6 +1,7 @@
 """Quantities of a moving load.
 
-    robot_power   sum over the robots' joints of max(torque x speed, 0), and copper losses of actuators [W]
+    robot_power   sum over the robots' joints of max(m x speed, 0), and copper losses of actuators [W], m the
+                  torque of the joint's motor: the joint's, and its gear's friction (`hardware.friction`)
     energy        robot_power over the time of a lift, the mean over all lifts [J]
     lift_seconds  least time in which a lift can be done, the mean over all lifts; worst_ the largest [s]
     l5s1_moment   |torque| at a person's joints between the fifth lumbar vertebra and the sacrum [N m]
@@ -13,10 +14,16 @@ from __future__ import annotations
 
 import numpy as np
 
+from evodesign.hardware.friction import MotorTorque
 from evodesign.human.back import LUMBAR
 from evodesign.mechanics.agent import Agent
 from evodesign.posture.results import AgentPosture
-from evodesign.quantities.hardware_quantities import copper_loss, power_by_torque
+from evodesign.quantities.hardware_quantities import (
+    copper_loss,
+    motor_torque,
+    power_by_speed,
+    power_by_torque,
+)
 from evodesign.quantities.over_agents import largest, over_agents, people, robots, total
 
 POWER, ENERGY, SPINE, LEAST_TIME = "robot_power", "energy", "l5s1_moment", "lift_seconds"
@@ -34,25 +41,33 @@ OF_HOLDS = (*PAPER_COSTS, ENDURANCE)
 
 def power(robot: Agent, posture: AgentPosture) -> float:
     """What a robot's joints and actuators draw at an instant [W]."""
-    mechanical = (max(posture.torques[joint] * speed, 0.0) for joint, speed in posture.speeds.items())
-    return float(sum(mechanical)) + copper_loss(robot, posture)
+    return sum(motor.value * speed for motor, speed in _driving(robot, posture).values()) + copper_loss(
+        robot, posture
+    )
 
 
 def motion_power_by_torque(robot: Agent, posture: AgentPosture) -> dict[str, float]:
-    """D P / d tau = 2 tau / K^2, and the speed of each joint that drives."""
+    """D P / d tau: of copper losses, and dm / d tau times the speed of each motor that drives."""
     copper = power_by_torque(robot, posture)
-    speeds = {joint: posture.speeds[joint] for joint in _driving(posture)}
-    return {joint: copper.get(joint, 0.0) + speeds.get(joint, 0.0) for joint in posture.torques}
+    found = {joint: copper.get(joint, 0.0) for joint in posture.torques}
+    for joint, (motor, speed) in _driving(robot, posture).items():
+        found[joint] += motor.by_torque * speed
+    return found
 
 
 def motion_power_by_speed(robot: Agent, posture: AgentPosture) -> dict[str, float]:
-    """The torque of each joint that drives."""
-    return {joint: posture.torques[joint] for joint in _driving(posture)}
+    """D P / d w: of copper losses, and m + dm / d w times the speed of each motor that drives."""
+    copper = power_by_speed(robot, posture)
+    found = {joint: copper.get(joint, 0.0) for joint in posture.speeds}
+    for joint, (motor, speed) in _driving(robot, posture).items():
+        found[joint] += motor.value + motor.by_speed * speed
+    return found
 
 
-def _driving(posture: AgentPosture) -> list[str]:
-    """Joints whose torque turns them on."""
-    return [joint for joint, speed in posture.speeds.items() if posture.torques[joint] * speed > 0.0]
+def _driving(robot: Agent, posture: AgentPosture) -> dict[str, tuple[MotorTorque, float]]:
+    """Torque [N m] and speed [rad/s] of the motors that turn their joints on."""
+    motors = ((joint, motor_torque(robot, posture, joint), speed) for joint, speed in posture.speeds.items())
+    return {joint: (motor, speed) for joint, motor, speed in motors if motor.value * speed > 0.0}
 
 
 ROBOT_POWER = over_agents(

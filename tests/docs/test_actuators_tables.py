@@ -31,7 +31,7 @@ def test_the_text_counts_the_rows_as_they_are(repository: Path) -> None:
         f"{sum(row.housing is not None for row in rows)} the housing's",
         f"{sum(row.reflected_inertia is not None for row in rows)} the rotor's inertia",
         f"{sum(row.motor_constant is not None for row in rows)} torque constant and resistance",
-        f"as its makers print it ({sum(row.friction_torque_n_m is not None for row in rows)} rows)",
+        f"turns the output without current ({sum(row.friction_torque_n_m is not None for row in rows)} rows",
     ):
         assert words in text, words
 

@@ -38,6 +38,8 @@ def test_words_quote_the_figures_of_the_row(row: CatalogueRow) -> None:
         (row.ratcheting_torque_n_m, [1.0]),
         (row.no_load_speed_rpm, [1.0]),
         (row.friction_torque_n_m, [1.0]),
+        (row.load_friction or None, [1.0]),
+        (row.viscous_friction_n_m_s_per_rad or None, [1.0]),
         (row.mass_kg, [1.0, 1e3]),
         (row.diameter_m, [1e3]),
         (row.length_m, [1e3]),

@@ -14,7 +14,7 @@ from evodesign.errors import InputError
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.gradients import assessed_gradients
 from evodesign.evaluation.sensitivities import Sensitivities
-from evodesign.hardware.actuators import actuator_law
+from evodesign.hardware.actuators import PowerLaw, actuator_law
 from evodesign.hardware.heat import Duty
 from evodesign.mechanics.agent import ROBOT
 from evodesign.problem.build import DesignProblem, build_problem
@@ -22,6 +22,7 @@ from evodesign.problem.designs import designs_text, read_designs
 from evodesign.problem.model_json import model_json
 from evodesign.quantities.design_result import DesignResult
 from evodesign.quantities.hardware_quantities import cost
+from evodesign.quantities.motion_quantities import motion_power_by_speed, motion_power_by_torque, power
 from evodesign.quantities.objectives import objective_kinds
 from evodesign.records import Constraint, Hold, Objective, ProblemSource, Sense, design_of
 from evodesign.tree.equip import actuators_of, rated_torques
@@ -54,6 +55,7 @@ winding_limit_c = 120.0
 thermal_time_constant_s = 120.0
 """
 WARM = "\n[constraints]\nwinding_temperature_c = { upper = 100.0 }\n"
+FRICTION = "\n[hardware]\ngear_friction = true\n"
 WALL = '\n[[design.wall]]\nname = "arms"\nlinks = ["l_arm", "r_arm"]\n'
 THIN = "thickness_m = [0.001, 0.004]\n"
 IN_ALUMINIUM = 'material = "aluminium_6061"\n'
@@ -238,6 +240,18 @@ def test_designs_name_torques_walls_and_models() -> None:
         (SHOULDER + SIZES + DUTY.replace("= 20.0", "= 61.0"), ["duty.hold_s", "at most 60 s"]),
         (SHOULDER + SIZES + WARM, ["constraints.winding_temperature_c", "a [duty] for"]),
         (SHOULDER + SIZES + DUTY.replace("c = 120", "c = 20"), ["duty.winding_limit_c", "60"]),
+        (
+            SHOULDER + SIZES + 'gear = "strain_wave"\n' + FRICTION,
+            [
+                "hardware.gear_friction",
+                "gears whose friction the catalogue knows: planetary",
+                "'strain_wave'",
+            ],
+        ),
+        (
+            SHOULDER + 'models = ["RH-17", "X4-10"]\n' + FRICTION,
+            ["design.actuator[0].models", "'RH-17', without a friction_torque_n_m"],
+        ),
     ],
 )
 def test_contradictions_are_refused_in_a_sentence(more: str, words: list[str]) -> None:
@@ -254,6 +268,8 @@ ARMS = tuple(
 ELBOWS = ("l_elbow", "r_elbow")
 
 
+EASILY = PowerLaw(0.005, 1.0, 1.0, 4)
+"""Friction of 0.2 N m at 40, which is less than an elbow bears."""
 EASY = Duty(holds_per_hour=30.0, hold=40.0, shift=4.0, air=25.0, limit=120.0, time_constant=90.0)
 
 
@@ -262,7 +278,9 @@ def driven(problem: DesignProblem) -> DesignProblem:
     """The point-grasp problem at one height, with actuators for shoulders and elbows."""
     actuators = (
         DesignParameter(ParameterKind.ACTUATOR, "shoulder", (), 0.5, 100.0, joints=ARMS, duty=EASY),
-        DesignParameter(ParameterKind.ACTUATOR, "elbow", (), 0.5, 100.0, joints=ELBOWS, duty=EASY),
+        DesignParameter(
+            ParameterKind.ACTUATOR, "elbow", (), 0.5, 100.0, joints=ELBOWS, duty=EASY, friction=EASILY
+        ),
     )
     robot = replace(problem.scene.robot, torque_limits=dict.fromkeys(problem.scene.robot.joints, 500.0))
     return replace(
@@ -297,12 +315,40 @@ def test_holding_power_and_margin_are_those_of_the_torques_by_hand(strong: Desig
     kinds, law = objective_kinds(), actuator_law()
     torques = strong.cases[0].postures[ROBOT].torques
     constant = law.motor_constant(40.0)
-    power = sum((torques[joint] / constant) ** 2 for joint in (*ARMS, *ELBOWS))
+    friction = 0.005 * 40.0  # which holds so much of an elbow's torque
+    motors = [torques[joint] for joint in ARMS] + [abs(torques[joint]) - friction for joint in ELBOWS]
+    assert min(motors[-2:]) > 0.0
+    power = sum((torque / constant) ** 2 for torque in motors)
     assert kinds["holding_power"].value(strong) == pytest.approx(power, rel=1e-12)
     largest = max(abs(torques[joint]) for joint in (*ARMS, *ELBOWS))
     assert kinds["torque_margin"].value(strong) == pytest.approx(40.0 / largest, rel=1e-12)
     ball = law.mass(law.peak(40.0))
     assert kinds["actuator_mass"].value(strong) == pytest.approx(8 * ball, rel=1e-12)
+
+
+def test_in_a_lift_motors_work_against_friction(driven: DesignProblem, strong: DesignResult) -> None:
+    """Power of a posture that moves: by hand, and its slopes by differences."""
+    robot, held = replace(driven.scene.robot, tree=strong.tree), strong.cases[0].postures[ROBOT]
+    speeds = {joint: 0.3 * math.cos(place) for place, joint in enumerate(held.joints)}
+    posture = replace(held, speeds=speeds)
+    friction = 0.005 * 40.0
+    wanted = 0.0
+    for joint, speed in speeds.items():
+        against = friction * speed / math.hypot(speed, 0.02) if joint in ELBOWS else 0.0
+        motor = held.torques[joint] + against
+        constant = actuator_law().motor_constant(40.0) if joint in (*ARMS, *ELBOWS) else math.inf
+        wanted += max(motor * speed, 0.0) + (motor / constant) ** 2
+    assert power(robot, posture) == pytest.approx(wanted, rel=1e-12)
+    by_torque, by_speed = motion_power_by_torque(robot, posture), motion_power_by_speed(robot, posture)
+    step = 1e-5
+    for joint in (*ELBOWS, "l_shoulder_pitch", "r_knee"):
+        for field, slopes in (("torques", by_torque), ("speeds", by_speed)):
+            at = getattr(posture, field)
+            ends = [
+                power(robot, replace(posture, **{field: {**at, joint: at[joint] + side * step}}))
+                for side in (-1.0, 1.0)
+            ]
+            assert slopes[joint] == pytest.approx((ends[1] - ends[0]) / (2.0 * step), rel=1e-6, abs=1e-6)
 
 
 def test_a_posture_keeps_within_what_its_actuators_can_hold(strong: DesignResult, inner: Evaluator) -> None:
@@ -348,7 +394,9 @@ def test_a_posture_keeps_within_what_windings_bear_in_the_duty(
     torques = result.cases[0].postures[ROBOT].torques
     assert max(abs(torques[joint]) for joint in ELBOWS) <= limit + 1e-5
     assert [rated_torques(result.tree)[joint] for joint in ELBOWS] == pytest.approx([limit, limit], rel=1e-9)
-    warmest = max(HOT.temperature(abs(torques[joint]) * share / limit) for joint in ELBOWS)
+    warmest = max(
+        HOT.temperature((abs(torques[joint]) - 0.005 * limit / share) * share / limit) for joint in ELBOWS
+    )
     shoulders = max(HOT.temperature(abs(torques[joint]) / 40.0) for joint in ARMS)
     found = objective_kinds()["winding_temperature"].value(result)
     assert found == pytest.approx(max(warmest, shoulders), rel=1e-9)

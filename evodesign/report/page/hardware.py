@@ -43,7 +43,8 @@ def _actuator(
 ) -> ActuatorContent:
     """A group of joints with the same actuator, told by the joint that is used most."""
     joint = max(rows, key=lambda each: rows[each]["share"])
-    row, duty = rows[joint], actuators_of(tree)[joint].duty
+    row, actuator = rows[joint], actuators_of(tree)[joint]
+    duty, warming = actuator.duty, actuator.motor(_held(rows, cases)).value
     return ActuatorContent(
         name=name,
         model=row["model"] or "",
@@ -57,7 +58,7 @@ def _actuator(
         asked_by=row["asked_by"],
         share=row["share"],
         loss_w=sum(each["loss_w"] for each in rows.values()),
-        winding_c=None if duty is None else duty.temperature(_held(rows, cases) / row["rated_torque_n_m"]),
+        winding_c=None if duty is None else duty.temperature(warming / row["rated_torque_n_m"]),
         winding_limit_c=None if duty is None else duty.limit,
     )
 
