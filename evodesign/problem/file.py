@@ -264,12 +264,12 @@ class GraspsTable(Table, frozen=True):
     """`robot_grasps_m`, `human_grasps_m`: grasp points from the box's centre, in the world's axes.
 
     Attributes:
-        left: grasp point of the left hand, in m.
-        right: grasp point of the right hand, in m.
+        left: grasp point of the left hand, in m; left out where there is none.
+        right: grasp point of the right hand, in m; likewise.
     """
 
-    left: Point
-    right: Point
+    left: Point | None = None
+    right: Point | None = None
 
 
 class PayloadTable(Table, frozen=True):

@@ -54,6 +54,7 @@ def _payload(key: str, table: PayloadTable, source: ProblemSource) -> Payload:
         for agent, grasps in ((ROBOT, table.robot_grasps_m), (HUMAN, table.human_grasps_m))
         if grasps is not None
         for side in SIDES
+        if getattr(grasps, side) is not None
     }
     moment = _hand_moment(key, table, source)
     return Payload(

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import product
 
 from evodesign.errors import InputError
-from evodesign.mechanics.agent import Agent
+from evodesign.mechanics.agent import SIDES, Agent, Role
 from evodesign.mechanics.scene import Scene
 from evodesign.problem.file import ProblemFile
 from evodesign.records import ProblemSource
@@ -64,12 +64,22 @@ def refuse_what_teams_lack(tables: ProblemFile, source: ProblemSource, team: Seq
             alone = "a robot that holds the load alone" if robots == 1 else found
             raise InputError(source.path, key, "a [human] with it", alone)
     for key, load in tables.loads.items():
-        for name, given, several in (
-            ("robot_grasps_m", load.robot_grasps_m, robots > 1),
-            ("human_grasps_m", load.human_grasps_m, people > 1),
+        for name, given, role in (
+            ("robot_grasps_m", load.robot_grasps_m, Role.ROBOT),
+            ("human_grasps_m", load.human_grasps_m, Role.PERSON),
         ):
-            if given is not None and several:
+            own = [agent for agent in team if agent.role is role]
+            if given is None:
+                continue
+            if len(own) > 1:
                 raise InputError(source.path, f"{key}.{name}", "one agent whose hands these are", found)
+            sides = [side for side in SIDES if getattr(given, side) is not None]
+            hands = [
+                side for side in SIDES if any(hand.side == side for agent in own for hand in agent.hands)
+            ]
+            if sides != hands:
+                wanted = f"a point for each hand: {', '.join(hands) or 'none'}"
+                raise InputError(source.path, f"{key}.{name}", wanted, ", ".join(sides) or "none")
     if robots > 1 or people > 1:
         for key in _needing_a_pair(tables):
             raise InputError(source.path, key, "one robot and one person with it", found)

@@ -329,6 +329,18 @@ def one_hand() -> DesignProblem:
     return built(shipped("one_hand", task={"heights_m": [0.8]}))
 
 
+@pytest.mark.parametrize("sides", [("left", "right"), ("left",), ()])
+def test_a_grasp_is_given_for_each_hand_and_no_other(sides: tuple[str, ...]) -> None:
+    tables = shipped("one_hand", task={"heights_m": [0.8]})
+    tables["payload"]["robot_grasps_m"] = {side: [0.0, 0.1, 0.0] for side in sides}
+    with pytest.raises(InputError, match="wanted a point for each hand: right, found") as error:
+        build_problem(source_of(tables))
+    assert error.value.key == "payload.robot_grasps_m"
+    tables["payload"]["robot_grasps_m"] = {"right": [-0.2, 0.1, 0.0]}
+    load = build_problem(source_of(tables)).scene.payload
+    assert load.grasp_points["robot", "right_hand"] == (-0.2, 0.1, 0.0)
+
+
 def test_a_robot_holds_its_end_with_one_hand(one_hand: DesignProblem) -> None:
     """The hand is in the middle of the robot's edge, and what both people's hands and it pass balances."""
     robot, human = one_hand.scene.agents
