@@ -11,7 +11,7 @@ Source: coal (formerly hpp-fcl): Gilbert, Johnson and Keerthi (1988), and expand
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -93,9 +93,15 @@ class SolidBodies:
     solids: tuple[ConvexSolid, ...]
 
     @classmethod
-    def of_tree(cls, tree: Tree) -> SolidBodies:
-        """Those of a tree of numbers, by link; bare frames have none."""
-        found = [(link.name, solid) for link in tree.links for solid in solids_of(link)]
+    def of_tree(cls, tree: Tree, only: Container[str] | None = None) -> SolidBodies:
+        """Those of a tree of numbers, by link; bare frames have none.
+
+        Args:
+            tree: whose links they are.
+            only: the links by name; None: all.
+        """
+        links = (link for link in tree.links if only is None or link.name in only)
+        found = [(link.name, solid) for link in links for solid in solids_of(link)]
         return cls(tuple(name for name, _ in found), tuple(solid for _, solid in found))
 
     @property

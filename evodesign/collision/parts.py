@@ -23,10 +23,10 @@ Source: distances by coal; the support of a cylinder.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import combinations
+from itertools import chain, combinations
 
 import numpy as np
 
@@ -57,10 +57,12 @@ class PartClearance:
     Args:
         least: of the two parts that have least, negative where they do not go together.
         lacking: the sum of what all pairs lack [m]; 0 where all go together.
+        decisive: the pairs that lack room, or the one that has least.
     """
 
     least: BodyDistance
     lacking: float
+    decisive: frozenset[BodyPair]
 
     @property
     def apart(self) -> float:
@@ -68,15 +70,17 @@ class PartClearance:
         return -self.lacking if self.lacking > 0.0 else self.least.distance
 
 
-def part_clearance(tree: Tree, unscaled: Tree) -> PartClearance | None:
+def part_clearance(tree: Tree, unscaled: Tree, among: Set[BodyPair] | None = None) -> PartClearance | None:
     """How much room the parts of a robot have; None where no actuator is a body.
 
     Args:
         tree: of a design, numbers, with its actuators.
         unscaled: that of the file.
+        among: the pairs that count, as `PartClearance.decisive` has them; None: all.
     """
-    mounted = [*_mounted(tree)]
-    if not mounted:
+    concerned = None if among is None else {name for pair in among for name in pair}
+    mounted = [each for each in _mounted(tree) if concerned is None or part_name(each[0]) in concerned]
+    if not mounted and among is None:
         return None
     own = SolidBodies(
         tuple(part_name(joint) for joint, _, _ in mounted),
@@ -84,14 +88,24 @@ def part_clearance(tree: Tree, unscaled: Tree) -> PartClearance | None:
     )
     frames = link_frames(tree, Placement(), {})
     at = {part_name(joint): frames[joint.parent] for joint, _, _ in mounted}
-    links = SolidBodies.of_tree(tree).hulls
+    links = SolidBodies.of_tree(tree, concerned).hulls
     placed = own.placed(at).beside(links.placed(frames))
-    places = _places(unscaled, placed.names, len(own.names))
-    found = [*_thickness(tree, mounted), *_held(placed, unscaled), *placed.overlapping(places)]
+    asked = unscaled, placed.names, len(own.names)
+    if among is None:
+        places = _places(*asked)
+    else:
+        places = places_of(placed.names, [pair for pair in _kept_apart(*asked) if pair in among])
+    found = [*_thickness(tree, mounted), *_held(placed, unscaled, among), *placed.overlapping(places)]
+    if among is not None:
+        found = [gap for gap in found if (gap.first, gap.second) in among]
     lacking = sum(max(0.0, -gap.distance) for gap in found)
     if lacking == 0.0 and len(places):
         found.append(placed.nearest(places))
-    return PartClearance(min(found, key=lambda gap: gap.distance), lacking) if found else None
+    if not found:
+        return None
+    least = min(found, key=lambda gap: gap.distance)
+    decisive = [gap for gap in found if gap.distance < 0.0] or [least]
+    return PartClearance(least, lacking, frozenset((gap.first, gap.second) for gap in decisive))
 
 
 def part_name(joint: Joint) -> str:
@@ -108,16 +122,23 @@ def _mounted(tree: Tree) -> Iterator[Mounted]:
 
 @once_per_tree
 def _places(unscaled: Tree, names: tuple[str, ...], count: int) -> Places:
-    """Which solids keep clear of each other, of which so many, the first by name, are actuators."""
+    """Which solids keep clear of each other."""
+    return places_of(names, _kept_apart(unscaled, names, count))
+
+
+def _kept_apart(unscaled: Tree, names: tuple[str, ...], count: int) -> Iterator[BodyPair]:
+    """Which bodies keep clear of each other, of which so many, the first by name, are actuators."""
     parents = {part_name(joint): joint.parent for joint in unscaled.joints}
     own, links = names[:count], dict.fromkeys(names[count:])
     beside = ((one, link) for one in own for link in links if not is_joined(unscaled, (parents[one], link)))
-    return places_of(names, [*combinations(own, 2), *beside])
+    return chain(combinations(own, 2), beside)
 
 
-def _held(placed: PlacedSolids, unscaled: Tree) -> Iterator[BodyDistance]:
+def _held(placed: PlacedSolids, unscaled: Tree, among: Set[BodyPair] | None) -> Iterator[BodyDistance]:
     """By how much links are farther from the next ones than in the file, as negative numbers."""
     before = _joined_distances(unscaled)
+    if among is not None:
+        before = {pair: distance for pair, distance in before.items() if pair in among}
     for pair, distance in _distances(placed, tuple(before)).items():
         if distance > before[pair] + TOUCH:
             yield BodyDistance(*pair, before[pair] - distance)

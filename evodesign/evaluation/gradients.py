@@ -16,12 +16,13 @@ Beyond 300 lines: a rule of differentiation for each kind of quantity, all over 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
+from evodesign.collision.parts import part_clearance
 from evodesign.collision.zero_posture import built_in_slack, distance_along
 from evodesign.design.parameter import ParameterKind
 from evodesign.evaluation.sensitivities import ObjectiveSensitivity, Sensitivities
@@ -57,7 +58,7 @@ from evodesign.violations import BODIES_APART, HEIGHT, PARTS_APART
 MOST_CASES = 8
 """Cases of which each is logged for itself; a mean over more is logged alone."""
 
-OF_THE_ROBOT = frozenset({*OF_MASSES, "cost", PARTS_APART})
+OF_THE_ROBOT = frozenset({*OF_MASSES, "cost"})
 """Objectives that depend on the robot's bodies alone."""
 
 Found = Array | NotDifferentiable
@@ -184,6 +185,8 @@ class _Design:
             return self._of_shared_reach()
         if name == BODIES_APART:
             return self._of_bodies()
+        if name == PARTS_APART:
+            return self._of_parts()
         if name in OF_THE_ROBOT:
             return self._of_robot(name)
         sensitivity = self._by_differences[name]
@@ -331,18 +334,35 @@ class _Design:
                 found[position] = (value(position, step) - value(position, -step)) / (2.0 * step)
         return found
 
+    def _of_parts(self) -> Found:
+        """Of the pairs of parts that decide."""
+        unscaled = self._problem.scene.designed_tree
+        clearance = part_clearance(self._result.tree, unscaled)
+        if clearance is None:
+            return NotDifferentiable("the design has no such value")
+
+        def apart(result: DesignResult) -> float:
+            found = part_clearance(result.tree, unscaled, clearance.decisive)
+            return 0.0 if found is None else found.apart  # all that lacked room have it by now
+
+        return self._of_trees(apart)
+
     def _of_robot(self, name: str) -> Found:
-        if isinstance(self._given, NotDifferentiable):
-            return self._given
         robot = self._sensitivities.robot
-        if robot is not None and name in OF_MASSES:
+        if robot is not None and name in OF_MASSES and not isinstance(self._given, NotDifferentiable):
             found = robot.of_masses(name, self._result.program_values)
             return found if self._given is None else np.asarray(found @ self._given)
+        return self._of_trees(lambda result: objective_value(name, result) or 0.0)
+
+    def _of_trees(self, value: Callable[[DesignResult], float]) -> Found:
+        """Of a value that follows from the robot's tree alone, by differences."""
+        if isinstance(self._given, NotDifferentiable):
+            return self._given
         found = np.zeros(len(self._values))
         for position, parameter in enumerate(self._problem.space.parameters):
             if not parameter.choices:
                 step, *beside = self._beside(position)
-                below, above = (objective_value(name, result) or 0.0 for result in beside)
+                below, above = map(value, beside)
                 found[position] = (above - below) / (2.0 * step)
         return found if self._given is None else np.asarray(found @ self._given)
 

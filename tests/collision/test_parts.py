@@ -137,6 +137,9 @@ def test_room_is_that_of_another_library_over_all_pairs(geometry: DesignProblem,
     assert room.least.distance == pytest.approx(least, abs=2e-6)
     assert found[frozenset((room.least.first, room.least.second))] == pytest.approx(least, abs=2e-6)
     assert room.apart == (-room.lacking if lacking > 0.0 else room.least.distance)
+    assert all(found[frozenset(names)] < 0.0 for names in room.decisive) == (lacking > 0.0)
+    assert len(room.decisive) == max(1, sum(distance < -1e-9 for distance in found.values()))
+    assert part_clearance(tree, geometry.scene.designed_tree, room.decisive) == room
 
 
 HOLDERS = [Sphere(0.08), Cylinder(0.06, 0.3), Cylinder(0.04, 0.2), Box(0.1, 0.08, 0.3), Box(0.2, 0.1, 0.12)]
