@@ -33,8 +33,9 @@ from evodesign.outside import is_outside
 from evodesign.pool.base import Limits, Pool
 from evodesign.pool.registry import make_pool
 from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.problem.agent_tables import HumanTable
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.file import HumanTable, ProblemFile, SolverTable
+from evodesign.problem.file import ProblemFile, SolverTable
 from evodesign.problem.source import decode_toml
 from evodesign.records import (
     Assessed,

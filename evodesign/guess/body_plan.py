@@ -20,7 +20,7 @@ from evodesign.body.placement import Placement, Vector
 from evodesign.errors import ModelError
 from evodesign.guess.limbs import FEWEST_JOINTS, Limb, LimbPair, limb_from, limb_pairs
 from evodesign.mechanics.agent import SIDES
-from evodesign.problem.file import Facing
+from evodesign.problem.agent_tables import Facing
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import JointKind, Tree
 from evodesign.tree.welded import WeldedBody, WeldedTree

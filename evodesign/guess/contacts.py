@@ -32,7 +32,7 @@ from evodesign.body.shape import Box, Cylinder, Shape
 from evodesign.guess.body_plan import BodyPlan
 from evodesign.guess.limbs import Limb
 from evodesign.mechanics.agent import SIDES
-from evodesign.problem.file import Facing
+from evodesign.problem.agent_tables import Facing
 from evodesign.tree.mesh_write import vertices_of
 from evodesign.tree.welded import WeldedBody, WeldedTree
 

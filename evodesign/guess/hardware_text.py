@@ -19,7 +19,7 @@ from evodesign.body.placement import Placement, Vector, dot, rotate
 from evodesign.guess.body_plan import BodyPlan
 from evodesign.guess.limbs import Limb
 from evodesign.mechanics.agent import SIDES
-from evodesign.problem.file import Facing
+from evodesign.problem.agent_tables import Facing
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Joint
 

@@ -22,8 +22,9 @@ from evodesign.evaluation.evaluate import Evaluator
 from evodesign.guess.body_plan import body_plan
 from evodesign.mechanics.agent import SIDES, Agent
 from evodesign.mechanics.scene import Scene
+from evodesign.problem.agent_tables import Facing
 from evodesign.problem.build import DesignProblem
-from evodesign.problem.file import Facing, ProblemFile
+from evodesign.problem.file import ProblemFile
 from evodesign.problem.source import decode_toml
 from evodesign.tree.model import Tree
 from evodesign.tree.welded import WeldedTree, without_frames

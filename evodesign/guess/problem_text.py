@@ -16,7 +16,7 @@ from evodesign.guess.hardware_text import hardware_text
 from evodesign.guess.heights import held_heights
 from evodesign.guess.parameters import Group, LoadGuess, groups, load_guess
 from evodesign.mechanics.agent import SIDES
-from evodesign.problem.file import Facing
+from evodesign.problem.agent_tables import Facing
 from evodesign.problem.table import FILL_IN
 from evodesign.tree.model import Tree
 from evodesign.tree.urdf_read import InertiaRule

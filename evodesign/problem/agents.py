@@ -33,17 +33,17 @@ from evodesign.mechanics.agent import (
     two_hands_two_feet,
 )
 from evodesign.mechanics.contact import SoleSize
-from evodesign.problem.file import (
+from evodesign.problem.agent_tables import (
     BaseTable,
     Facing,
     FrameTable,
     HandsTable,
     HumanTable,
-    ProblemFile,
     RobotTable,
     SolesTable,
     TorqueLimits,
 )
+from evodesign.problem.file import ProblemFile
 from evodesign.problem.flexion import bent_ranges
 from evodesign.problem.meshes import with_surfaces
 from evodesign.problem.person_posture import HEAD, with_posture

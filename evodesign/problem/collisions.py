@@ -15,7 +15,8 @@ from evodesign.design.spread import spread_designs
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.scene import Scene
-from evodesign.problem.file import CollisionsTable, ProblemFile
+from evodesign.problem.file import ProblemFile
+from evodesign.problem.task_tables import CollisionsTable
 from evodesign.records import ProblemSource
 
 DESIGNS = 16

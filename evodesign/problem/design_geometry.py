@@ -9,8 +9,9 @@ from evodesign.design.parameter import DesignParameter, ParameterKind
 from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError, ModelError
 from evodesign.mechanics.agent import Agent
+from evodesign.problem.agent_tables import RobotTable
 from evodesign.problem.design_table import JointTable
-from evodesign.problem.file import ProblemFile, RobotTable
+from evodesign.problem.file import ProblemFile
 from evodesign.problem.unknown_names import refuse_unknown
 from evodesign.records import ProblemSource
 from evodesign.tree.joint_changes import JointQuantity, pair_of_changes, widest_ranges

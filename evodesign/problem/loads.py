@@ -12,7 +12,8 @@ from evodesign.mechanics.agent import HUMAN, ROBOT, SIDES, TO_THE_LEFT, Agent
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, PushedAt
 from evodesign.mechanics.elbow import elbow
 from evodesign.mechanics.payload import WRIST_MOMENT, Grasp, GraspDirection, Payload
-from evodesign.problem.file import DisturbanceTable, PayloadTable, ProblemFile
+from evodesign.problem.file import ProblemFile
+from evodesign.problem.task_tables import DisturbanceTable, PayloadTable
 from evodesign.records import ProblemSource
 
 FROM_CORNERS = 0.25

@@ -17,7 +17,7 @@ from dataclasses import replace
 from pathlib import Path, PurePosixPath
 
 from evodesign.errors import InputError, ModelError
-from evodesign.problem.file import RobotTable
+from evodesign.problem.agent_tables import RobotTable
 from evodesign.problem.mesh_places import MeshPlaces
 from evodesign.problem.mesh_reading import few_triangles, read_mesh
 from evodesign.problem.mesh_upright import says_y_up, stood_upright

@@ -20,7 +20,7 @@ from evodesign.human.measured_posture import (
     measured_posture,
 )
 from evodesign.mechanics.agent import Agent
-from evodesign.problem.file import HumanTable, JointRanges
+from evodesign.problem.agent_tables import HumanTable, JointRanges
 from evodesign.records import ProblemSource
 from evodesign.tree.frames import link_frames
 

@@ -14,7 +14,8 @@ import msgspec
 import tomli_w
 
 from evodesign.errors import InputError
-from evodesign.problem.file import HumanTable, ProblemFile
+from evodesign.problem.agent_tables import HumanTable
+from evodesign.problem.file import ProblemFile
 from evodesign.problem.person_posture import is_measured
 from evodesign.problem.source import decode_toml
 from evodesign.records import ProblemSource

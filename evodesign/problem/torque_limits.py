@@ -8,7 +8,8 @@ from fnmatch import fnmatchcase
 
 from evodesign.errors import InputError, nearest_name
 from evodesign.mechanics.agent import Agent
-from evodesign.problem.file import ProblemFile, RobotTable, TorqueLimits
+from evodesign.problem.agent_tables import RobotTable, TorqueLimits
+from evodesign.problem.file import ProblemFile
 from evodesign.records import ProblemSource, Sense
 
 LIMITS = "torque_limits_n_m"

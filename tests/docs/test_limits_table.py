@@ -8,7 +8,7 @@ from pathlib import Path
 import msgspec
 
 from evodesign.mechanics.agent import StanceLimits
-from evodesign.problem.file import LimitsTable
+from evodesign.problem.task_tables import LimitsTable
 
 ROW = re.compile(r"^\| `(\w+)` \| ([^|]+) \| (\w+) \| [^|]+ \| [^|]+ \|$", re.MULTILINE)
 

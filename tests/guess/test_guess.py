@@ -18,7 +18,7 @@ from evodesign.guess.body_plan import BodyPlan, body_plan
 from evodesign.guess.contacts import contacts
 from evodesign.guess.parameters import groups, load_guess
 from evodesign.guess.problem_text import guessed_problem
-from evodesign.problem.file import Facing
+from evodesign.problem.agent_tables import Facing
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Joint, JointKind, Link, Look, Mesh, Tree
 from evodesign.tree.surface import surface_of

@@ -14,7 +14,7 @@ from evodesign.errors import ModelError
 from evodesign.guess.body_plan import body_plan
 from evodesign.guess.limbs import limb_pairs
 from evodesign.guess.parameters import groups, load_guess
-from evodesign.problem.file import Facing
+from evodesign.problem.agent_tables import Facing
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.welded import WeldedTree
 from tests.guess.humanoid import Build, humanoid, leg_length

@@ -24,7 +24,7 @@ from evodesign.posture.precompute.meetings import with_meetings
 from evodesign.posture.results import CaseSolution
 from evodesign.posture.symmetry import symmetric_forms, whole
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.problem.file import CollisionsTable, LimitsTable
+from evodesign.problem.task_tables import CollisionsTable, LimitsTable
 from evodesign.records import ActiveLimit
 
 STEPS = {"m": 1e-4, "rad": 1e-4, "N": 0.05, "N m": 0.02, "1": 1e-4}

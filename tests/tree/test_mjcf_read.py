@@ -18,7 +18,7 @@ import pytest
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.errors import ModelError
-from evodesign.problem.file import RobotTable
+from evodesign.problem.agent_tables import RobotTable
 from evodesign.problem.meshes import kept_name, mesh_texts, with_surfaces
 from evodesign.tree.frames import link_frames
 from evodesign.tree.mesh_write import vertices_of

@@ -17,7 +17,7 @@ import trimesh
 
 from evodesign.body.placement import Placement
 from evodesign.errors import InputError, ModelError
-from evodesign.problem.file import RobotTable
+from evodesign.problem.agent_tables import RobotTable
 from evodesign.problem.meshes import mesh_texts, with_surfaces
 from evodesign.problem.named_files import read_robot
 from evodesign.tree.frames import link_frames
