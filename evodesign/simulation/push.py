@@ -8,6 +8,7 @@ Whether a push is survived is known before capture points and load are back, as 
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
@@ -32,11 +33,11 @@ BROKEN_SECONDS = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Recovery:
-    """When a simulation ends well.
+    """When a simulation ends well: at its end no limit is broken, and nothing goes away from the plan.
 
     Args:
         within: nearer than this to the plan are capture points and load [m].
-        seconds: for which that lasts, and no limit is broken at its end [s].
+        seconds: for which that lasts [s].
     """
 
     within: float
@@ -46,8 +47,8 @@ class Recovery:
 BACK = Recovery(0.01, 0.2)
 """Everything is back."""
 
-SURVIVING = Recovery(0.03, 0.1)
-"""Who is so near will be back: of 403 pushes of bisections none was lost after it, and none after 4 cm."""
+SURVIVING = Recovery(0.04, 0.1)
+"""Who is so near will be back: of 403 pushes of bisections none was lost after it, and none after 5 cm."""
 
 BEYOND = math.radians(2.0)
 """By which a joint may push its stop in [rad]."""
@@ -153,7 +154,7 @@ class PushTest:
             push=push,
             reason=watched.reason,
             seconds=watched.seconds,
-            recovery=watched.last if watched.is_back and not watched.reason else None,
+            recovery=watched.last if not watched.reason and watched.is_back else None,
             load_off=watched.load_off,
             saturation=watched.saturated / watched.seconds,
             capture=watched.capture,
@@ -185,11 +186,13 @@ class _PushRecord:
         self.seconds = self.last = self.load_off = self.capture = self.saturated = 0.0
         self.reason = ""
         self._broken: dict[str, float] = {}
+        self._offs: deque[Array] = deque(maxlen=1 + round(awaited.seconds / scene.timing.step))
 
     @property
     def is_back(self) -> bool:
         """Whether all have been back for long enough."""
-        return not self._broken and self.seconds - self.last >= self._awaited.seconds
+        nearer = (self._offs[-1] <= np.maximum(self._offs[0], BACK.within)).all()
+        return bool(nearer) and not self._broken and self.seconds - self.last >= self._awaited.seconds
 
     def saw(self, commands: Mapping[str, Command], load_off: float) -> None:
         """Another answer of the controllers, and where everything is after it."""
@@ -204,7 +207,8 @@ class _PushRecord:
             self.reason = f"the load is more than {100 * LOAD_OFF:g} cm off its path"
         off = {name: float(np.linalg.norm(each.capture)) for name, each in commands.items()}
         self.capture = max(self.capture, off[self._pushed])
-        if max(*off.values(), load_off) > self._awaited.within:
+        self._offs.append(np.array([*off.values(), load_off]))
+        if self._offs[-1].max() > self._awaited.within:
             self.last = self.seconds
         for name in scene.controllers:
             root = engine.state(name).root[:3]

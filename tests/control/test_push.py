@@ -46,6 +46,13 @@ def test_a_pendulum_survives_until_its_capture_point_leaves_the_sole(
     assert 0.0 < pushes[0].recovery < pushes[0].seconds
 
 
+def test_who_is_near_the_plan_but_goes_away_from_it_is_not_taken_for_back() -> None:
+    """On a sole of 6 cm a capture point is lost 3 cm from its middle."""
+    pendulum = Pendulum(0.06)
+    outcome = pendulum.test().pushed(Push(1.1 * pendulum.survived(), 0.0, seconds=0.02), awaited=SURVIVING)
+    assert outcome.reason == "robot falls"
+
+
 class Straight(PushTest):
     """Survives what is below an impulse that depends on the direction alone."""
 
