@@ -2,11 +2,11 @@
 
 For the first feasible designs of a run the least push margin of the first hold is found, again with half the
 step of the integration and with half of all steps, and under other friction, load mass and sensor delay.
-Kendall's tau is that between all that the log of a run says of its feasible designs, torques and margins
-among them. The quadratic programs that come up after a push are solved by each library that is installed
-(`pip install quadprog piqp`).
+Kendall's tau is that between all that the log of a run says of its first feasible designs, torques and
+margins among them, and torques of a lift from the lowest to the highest hold. The quadratic programs that
+come up after a push are solved by each library that is installed (`pip install quadprog piqp`).
 
-    python -m benchmarks.push RUN [--designs 10] [--half] [--others] [--rankings] [--solvers]
+    python -m benchmarks.push RUN [--designs 10] [--half] [--others] [--rankings 60 [--lifts]] [--solvers]
 """
 
 from __future__ import annotations
@@ -25,15 +25,22 @@ from numpy.typing import NDArray
 
 import evodesign.control.controller as controller
 from evodesign.control.quadratic import QuadraticSolution, least_squares
+from evodesign.evaluation.factory import evaluator_of
+from evodesign.evaluation.lifts import Lifts
 from evodesign.evaluation.progress import SILENT
 from evodesign.evaluation.pushes import PERTURBED, pushed_holds
 from evodesign.mechanics.agent import ROBOT
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.report.opened_design import open_design
 from evodesign.runlog.run import read_run
 from evodesign.simulation.controlled import Timing
 from evodesign.simulation.push import Push
 from evodesign.simulation.push_margin import Margin, least_margin
 from evodesign.simulation.pushed_plan import PushConditions, PushedDesign
+from evodesign.tasks import Lift
+
+LIFT_SECONDS = 1.5
+"""Of the lift whose torques are ranked [s]."""
 
 Array = NDArray[np.float64]
 Program = tuple[Array, Array, Array, Array, Array]
@@ -72,18 +79,45 @@ def designs(run: Path, count: int, conditions: Mapping[str, PushConditions]) -> 
         )
 
 
-def rankings(run: Path) -> None:
-    """Print Kendall's tau between all that the log says of its feasible designs."""
+def rankings(run: Path, count: int, *, lifted: bool) -> None:
+    """Print Kendall's tau between all that the log says of its first feasible designs.
+
+    Args:
+        run: with objectives and torques in its log.
+        count: of designs.
+        lifted: whether each design also lifts the load from its lowest to its highest hold.
+    """
+    log = read_run(run)
+    feasible = [each.assessment for each in log.evaluations if each.assessment.violation == 0.0][:count]
+    lift = torques_in_lifts(build_problem(log.header.problem)) if lifted else lambda _: {}
     rows = []
-    for each in read_run(run).evaluations:
-        found = each.assessment
-        if found.violation == 0.0:
-            norms = [case.robot_torque_norm for case in found.cases if case.robot_torque_norm is not None]
-            rows.append({**found.objectives, **found.constrained, "robot torque": float(np.mean(norms))})
-    print(f"{len(rows)} feasible designs")
-    for one, other in combinations(rows[0], 2):
+    for found in feasible:
+        norms = [case.robot_torque_norm for case in found.cases if case.robot_torque_norm is not None]
+        held = {**found.objectives, **found.constrained, "robot torque": float(np.mean(norms))}
+        rows.append({**held, **lift(found.design)})
+    names = max(rows, key=len)
+    rows = [row for row in rows if len(row) == len(names)]
+    print(f"{len(rows)} of {len(feasible)} feasible designs")
+    for one, other in combinations(names, 2):
         tau = scipy.stats.kendalltau([row[one] for row in rows], [row[other] for row in rows])
         print(f"tau of {one} and {other}: {tau.statistic:.2f} (p = {tau.pvalue:.2g})")
+
+
+def torques_in_lifts(problem: DesignProblem) -> Callable[[Mapping[str, float]], dict[str, float]]:
+    """From a design's parameters to mean torque norms in a lift [N m]; none where it was not found."""
+    heights = [height for task in problem.tasks for height in task.heights]
+    asked = Lift(min(heights), max(heights), LIFT_SECONDS)
+    evaluator = evaluator_of(problem, 1, SILENT, [asked])
+    lifts = Lifts(evaluator, evaluator.known)
+
+    def torques(design: Mapping[str, float]) -> dict[str, float]:
+        found = [*lifts.solve(problem.space.values_of(design), asked).values()]
+        if not all(each.solved for each in found):
+            return {}
+        means = {name: [each.efforts[name].mean_torque for each in found] for name in found[0].efforts}
+        return {f"{name} torque in a lift": float(np.mean(each)) for name, each in means.items()}
+
+    return torques
 
 
 def recorded(run: Path, design: int) -> list[Program]:
@@ -154,7 +188,8 @@ def main() -> None:
     parser.add_argument("--designs", type=int, default=0)
     parser.add_argument("--half", action="store_true")
     parser.add_argument("--others", action="store_true")
-    parser.add_argument("--rankings", action="store_true")
+    parser.add_argument("--rankings", type=int, default=0)
+    parser.add_argument("--lifts", action="store_true")
     parser.add_argument("--solvers", action="store_true")
     given = parser.parse_args()
     usual = Timing()
@@ -169,7 +204,7 @@ def main() -> None:
     if given.solvers:
         solvers(given.run)
     if given.rankings:
-        rankings(given.run)
+        rankings(given.run, given.rankings, lifted=given.lifts)
     if given.designs:
         designs(given.run, given.designs, conditions)
 

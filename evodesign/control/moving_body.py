@@ -5,8 +5,8 @@
 Velocities are pinocchio's: linear and angular velocity of the root link in its own axes, then the speeds of
 the joints, in pinocchio's order. Rotors turn with their joints: their reflected inertia is on M's diagonal.
 
-Source: Featherstone 2008, Rigid Body Dynamics Algorithms, chapters 5, 6 and 9; pinocchio `crba`,
-`nonLinearEffects`, `getFrameJacobian`.
+Source: Featherstone 2008, Rigid Body Dynamics Algorithms, chapters 5, 6 and 9; pinocchio `computeAllTerms`,
+`getFrameJacobian`.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ class MovingBody:
         self._feet = [frames[name] for name in agent.foot_frames]
         self._hands = [frames[name] for name in agent.hand_frames]
         self._trunk = frames[agent.pushed_frame]
-        self.rotors = np.zeros(body.model.nv)
+        self.rotors, self._still = np.zeros(body.model.nv), np.zeros(body.model.nv)
         driven = actuators_of(tree)
         for joint, rate in zip(agent.joints, self.rates, strict=True):
             self.rotors[rate] = float(driven[joint].inertia) if joint in driven else 0.0
@@ -150,19 +150,18 @@ class MovingBody:
     def at(self, q: Array, v: Array) -> BodyMotion:
         """What the equation of motion needs at a state."""
         model, data = self._model, self._data
-        still = np.zeros(model.nv)
-        mass = np.array(pin.crba(model, data, q))
-        mass[np.diag_indices_from(mass)] += self.rotors
-        bias = np.array(pin.nonLinearEffects(model, data, q, v))
-        pin.ccrba(model, data, q, v)
-        spin = float(np.trace(data.Ig.inertia)) / 3.0
-        to_center = np.array(pin.jacobianCenterOfMass(model, data, q))
-        pin.centerOfMass(model, data, q, v, still)
+        pin.computeAllTerms(model, data, q, v)
+        pin.forwardKinematics(model, data, q, v, self._still)
+        pin.centerOfMass(model, data, pin.ACCELERATION, False)
+        mass = data.M + np.diag(self.rotors)
+        bias, spin = np.array(data.nle), float(np.trace(data.Ig.inertia)) / 3.0
         center = FrameMotion(
-            np.eye(3), np.array(data.com[0]), to_center, np.array(data.vcom[0]), np.array(data.acom[0])
+            np.eye(3),
+            np.array(data.com[0]),
+            np.array(data.Jcom),
+            np.array(data.vcom[0]),
+            np.array(data.acom[0]),
         )
-        pin.computeJointJacobians(model, data, q)
-        pin.forwardKinematics(model, data, q, v, still)
         return BodyMotion(
             velocity=v,
             mass=mass,

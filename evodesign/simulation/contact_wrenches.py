@@ -38,14 +38,15 @@ def hand_wrenches(found: SimulatedScene, parts: AgentParts) -> Array:
     """On each hand, in the agent's frame and about the grasp point, likewise."""
     model, data = found.model, found.data
     first = int(model.body_dofadr[found.load])
-    jacobian = data.efc_J.reshape(data.nefc, model.nv)[:, first : first + 6]
     grasps = data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
     agent_from_world = parts.agent.turn.T
     wrenches = np.zeros((len(parts.hands), 6))
     for row, (hand, site) in enumerate(parts.hands.items()):
         number = model.equality(f"{parts.agent.name}/{hand}").id
         mine = grasps & (data.efc_id == number)
-        force, moment = np.split(jacobian[mine].T @ data.efc_force[mine], 2)
+        whole = np.zeros(model.nv)
+        mujoco.mj_mulJacTVec(model, data, whole, np.where(mine, data.efc_force, 0.0))
+        force, moment = np.split(whole[first : first + 6], 2)
         moment = data.xmat[found.load].reshape(3, 3) @ moment  # a free body turns in its own axes
         lever = data.site_xpos[site] - data.xpos[found.load]
         moment = moment - np.cross(lever, force)

@@ -121,7 +121,6 @@ def simulated_scene(
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_EULER
     spec.option.cone, spec.option.impratio = mujoco.mjtCone.mjCONE_ELLIPTIC, FRICTION_FIRST
     spec.option.tolerance = 1e-12
-    spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE  # whose rows `contact_wrenches` reads
     give = {"solref": [2.0 * step, 1.0], "solimp": NEARLY_RIGID}
     spec.worldbody.add_geom(
         name="floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=[3.0, 3.0, 0.1], rgba=[0.9, 0.9, 0.9, 1.0]

@@ -14,8 +14,8 @@ from evodesign.records import Case
 from evodesign.simulation.controlled import Timing
 from evodesign.simulation.engine import engine_named
 from evodesign.simulation.installed import EngineName
-from evodesign.simulation.push import Push, PushOutcome, PushTest
-from evodesign.simulation.push_margin import DIRECTIONS, least_margin, margin_in, margins
+from evodesign.simulation.push import BACK, SURVIVING, Push, PushOutcome, PushTest, Recovery
+from evodesign.simulation.push_margin import DIRECTIONS, FASTEST, SMALLEST, least_margin, margins
 from evodesign.simulation.pushable import refuse_unpushable
 from evodesign.simulation.pushed_plan import PushConditions, PushedDesign, PushedPlan, pushed_cases
 from evodesign.tasks import Hold, Lift
@@ -46,17 +46,24 @@ def test_a_pendulum_survives_until_its_capture_point_leaves_the_sole(
     assert 0.0 < pushes[0].recovery < pushes[0].seconds
 
 
+def test_who_is_near_the_plan_but_goes_away_from_it_is_not_taken_for_back() -> None:
+    """On a sole of 6 cm a capture point is lost 3 cm from its middle."""
+    pendulum = Pendulum(0.06)
+    outcome = pendulum.test().pushed(Push(1.1 * pendulum.survived(), 0.0, seconds=0.02), awaited=SURVIVING)
+    assert outcome.reason == "robot falls"
+
+
 class Straight(PushTest):
     """Survives what is below an impulse that depends on the direction alone."""
 
-    def __init__(self, *, turned: float = 0.5) -> None:
+    def __init__(self, *, turned: float = 0.5, largest: float = 14.0) -> None:
         self.tried: list[Push] = []
-        self.turned, self.is_symmetric = turned, turned == 0.0
+        self.turned, self.is_symmetric, self.largest = turned, turned == 0.0, largest
 
     def limit(self, direction: float) -> float:
-        return 10.0 - 4.0 * math.cos(direction - self.turned)
+        return self.largest * (10.0 - 4.0 * math.cos(direction - self.turned)) / 14.0
 
-    def pushed(self, push: Push, frames: bool = False) -> PushOutcome:
+    def pushed(self, push: Push, frames: bool = False, awaited: Recovery = BACK) -> PushOutcome:
         self.tried.append(push)
         reason = "" if push.impulse < self.limit(push.direction) else "robot falls"
         return PushOutcome(push, reason, 1.0, None, 0.0, 0.0, 0.0)
@@ -75,7 +82,26 @@ def test_bisection_finds_the_limit_in_each_direction_and_the_least_with_fewer_tr
     assert 0.975 * min(limits) < weakest.impulse <= min(limits)
     assert weakest.trials == len(least.tried) < len(every.tried) / 2
     assert least_margin({}, "robot", 30.0) is None
-    assert margin_in(least, "hold", Push(0.0, 0.0), 30.0, most=2.0).impulse == 2.0
+
+
+@pytest.mark.parametrize("largest", [2.0, 14.0, 60.0, 200.0])
+def test_no_impulse_is_tried_twice_and_those_who_are_weaker_alone_are_bisected(largest: float) -> None:
+    tests = {"low": Straight(largest=largest), "high": Straight(turned=2.0, largest=0.99 * largest)}
+    found = least_margin(tests, "robot", 30.0)
+    assert found is not None
+    limit = min(test.limit(each) for test in tests.values() for each in DIRECTIONS)
+    assert 0.979 * limit - SMALLEST < found.impulse <= limit
+    assert tests[found.moment].limit(found.direction) == limit
+    tried = [(name, push.direction, push.impulse) for name, test in tests.items() for push in test.tried]
+    assert len(set(tried)) == len(tried) == found.trials < 40
+
+
+def test_a_margin_ends_at_what_is_tried_at_most_and_at_nothing() -> None:
+    strong, weak = Straight(largest=1e6), Straight(largest=1e-6)
+    for test, impulse, reason in ((strong, FASTEST * 30.0, ""), (weak, 0.0, "robot falls")):
+        found = least_margin({"hold": test}, "robot", 30.0)
+        assert found is not None
+        assert (found.impulse, found.reason) == (impulse, reason)
 
 
 def pushed(held: Held, conditions: PushConditions | None = None, *, alone: bool = False) -> PushTest:
@@ -131,6 +157,16 @@ def test_a_push_is_survived_or_not_and_told_alike_each_time(held: Held, engine: 
     assert [getattr(again, each) for each in fields] == [getattr(weak, each) for each in fields]
     assert not strong.survived
     assert np.isfinite([strong.seconds, strong.load_off, strong.capture]).all()
+
+
+@pytest.mark.parametrize("direction", [0.0, 90.0])
+def test_who_comes_near_the_plan_after_a_push_comes_back(pushed_hold: PushTest, direction: float) -> None:
+    push = Push(20.0, math.radians(direction))
+    near, back = (pushed_hold.pushed(push, awaited=each) for each in (SURVIVING, BACK))
+    assert near.survived
+    assert back.survived
+    assert near.seconds < back.seconds
+    assert near.capture == back.capture
 
 
 def test_late_sensors_and_another_load_change_what_a_push_does(held: Held, pushed_hold: PushTest) -> None:
