@@ -71,6 +71,11 @@ class Leg:
         """Of thigh and shank together [m]."""
         return float(np.linalg.norm(self.hip - self.knee) + np.linalg.norm(self.knee - self.ankle))
 
+    @property
+    def height(self) -> float:
+        """Of the hip above a floor at zero on which the foot stands, with the leg straight [m]."""
+        return self.length + float(self.ankle[2])
+
     def span(self, flexion: float) -> float:
         """Distance of hip and ankle with a knee that is bent by an angle [rad]."""
         thigh, shank = np.linalg.norm(self.hip - self.knee), np.linalg.norm(self.knee - self.ankle)

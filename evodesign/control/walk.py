@@ -244,7 +244,7 @@ def walk_of(
         way: of all.
     """
     legs = [leg for body in bodies for leg in body.legs(holds[body.agent.name].coordinates)]
-    gait = Gait.of(min(leg.length + leg.ankle[2] for leg in legs))
+    gait = Gait.of(min(leg.height for leg in legs))
     passing = all(abs(body.agent.turn[:2, 0] @ way.along) > PASSING - 1e-9 for body in bodies)
     walkers = {}
     for body in bodies:
