@@ -17,6 +17,7 @@ from typer.core import TyperCommand, TyperGroup
 
 from evodesign.cli.baseline import baseline
 from evodesign.cli.branch import branch
+from evodesign.cli.carry import carry
 from evodesign.cli.check import check
 from evodesign.cli.compare import compare
 from evodesign.cli.evaluate import evaluate
@@ -67,6 +68,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "lift": lift,
     "simulate": simulate,
     "push": push,
+    "carry": carry,
     "polish": polish,
     "check": check,
     "problems": problems,

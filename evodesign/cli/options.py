@@ -72,6 +72,7 @@ Engine = Annotated[
 HEIGHT = partial(typer.Option, "--height", metavar="M", help="Only holds at this height [m]; again for more.")
 Heights = Annotated[list[float] | None, HEIGHT(show_default="all")]
 PushedHeights = Annotated[list[float] | None, HEIGHT(show_default="lowest and highest")]
+CarriedHeights = Annotated[list[float] | None, HEIGHT(show_default="the middle one")]
 Person = Annotated[
     str | None,
     typer.Option("--person", metavar="NAME", help="Only with this person.", show_default="all"),

@@ -4,9 +4,9 @@ Unknown are the accelerations a of the body and the wrenches f of its feet; torq
 
     tau = M_j a + h_j - J_feet,j' f - J_hands,j' F
 
-Strict are the motion of the root link (the same rows of the equation of motion without a torque), soles that
-stay where they are, friction, centres of pressure (`mechanics.contact`), torque limits, and the ranges of
-joints and their speeds as limits of their accelerations,
+Strict are the motion of the root link (the same rows of the equation of motion without a torque), soles of
+feet that stand, which stay where they are, friction, centres of pressure (`mechanics.contact`), limits of
+torques, and the ranges of joints and their speeds as limits of their accelerations,
 
     a >= -w^2 (q - q_min) - 2 z w v,     a >= -2 z w (v + v_max),     and likewise above,
 
@@ -14,6 +14,7 @@ so that a joint nears the end of its range like a critically damped oscillator; 
 all of these, ranges and speeds give way as little as can be. A sole that moves or tilts is brought to rest
 flat on the floor. Within these, least squares of what is wanted, in the masses and inertias that it moves:
 
+    soles     of feet that swing, along their courses, as much faster as soles come to rest
     balance   of the centre of mass c, with capture point c + v / w0 and w0 = sqrt(g / height):
               horizontally  a_plan + w w0 (c_plan - c) + (w + w0) (v_plan - v),  upwards as all below
     hands     each of n hands carries m/n of the load: a_plan + w^2 (x_plan - x) + 2 z w (v_plan - v), and the
@@ -35,8 +36,9 @@ Source: Wensing and Orin 2013 (task-space control by quadratic programs); Englsb
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 import pinocchio as pin
@@ -97,6 +99,23 @@ class HandShare:
     inertia: float
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Stance:
+    """On which feet an agent stands, and the limits of its program then.
+
+    Args:
+        feet: that stand, by their place among the agent's.
+        bounds: rows over accelerations and wrenches per mass; those of torques are still empty.
+        torques: rows of torques.
+        least: lower limits of the rows of cones.
+    """
+
+    feet: tuple[int, ...]
+    bounds: Array
+    torques: slice
+    least: Array
+
+
 class WholeBodyController:
     """Of one agent on feet.
 
@@ -118,22 +137,31 @@ class WholeBodyController:
     ) -> None:
         self.body, self.limits, self._share, self._gains = body, limits, share, feedback
         self._soles = replace(feedback, frequency=SOLES_FIRST * feedback.frequency)
-        units = [*np.eye(6), np.zeros(6)]
-        margins = [np.array([foot_margins(e, foot.sole, ground) for e in units]) for foot in body.agent.feet]
-        cones = scipy.linalg.block_diag(*((each[:-1] - each[-1]).T for each in margins))
         self._limited = np.flatnonzero(np.isfinite(limits.torque))
         self._bounded = np.flatnonzero(
             np.isfinite(limits.lower) | np.isfinite(limits.upper) | np.isfinite(limits.speed)
         )
-        self._least = -np.concatenate([each[-1] for each in margins]) / body.total
-        self._count, self._wrenches = body.size, cones.shape[1]
-        self._bounds = np.zeros(
+        self._count, every = body.size, range(len(body.agent.feet))
+        self._stances = {
+            feet: self._stance(feet, ground)
+            for count in range(1, len(every) + 1)
+            for feet in combinations(every, count)
+        }
+
+    def _stance(self, feet: tuple[int, ...], ground: Ground) -> _Stance:
+        """The limits of an agent that stands on some of its feet."""
+        body, units = self.body, [*np.eye(6), np.zeros(6)]
+        soles = [body.agent.feet[foot].sole for foot in feet]
+        margins = [np.array([foot_margins(e, sole, ground) for e in units]) for sole in soles]
+        cones = scipy.linalg.block_diag(*((each[:-1] - each[-1]).T for each in margins))
+        bounds = np.zeros(
             (len(cones) + len(self._limited) + len(self._bounded), body.size + 6 * len(margins))
         )
-        self._bounds[: len(cones), body.size :] = cones
-        ends = range(len(self._bounds) - len(self._bounded), len(self._bounds))
-        self._bounds[ends, body.rates[self._bounded]] = 1.0
-        self._torque_rows = slice(len(cones), len(cones) + len(self._limited))
+        bounds[: len(cones), body.size :] = cones
+        ends = range(len(bounds) - len(self._bounded), len(bounds))
+        bounds[ends, body.rates[self._bounded]] = 1.0
+        least = -np.concatenate([each[-1] for each in margins]) / body.total
+        return _Stance(feet, bounds, slice(len(cones), len(cones) + len(self._limited)), least)
 
     def command(self, q: Array, v: Array, target: Target) -> Command:
         """The torques at a state.
@@ -144,25 +172,28 @@ class WholeBodyController:
             target: at this moment.
         """
         body, count, rates = self.body.at(q, v), self._count, self.body.rates
+        stance = self._stances[target.stance]
+        standing = [body.feet[foot] for foot in stance.feet]
         hands, added = self._hands(body, target)
         capture = _capture(body, target)
         force = body.bias.copy()
         for hand, wrench in zip(body.hands, hands, strict=True):
             force -= hand.jacobian.T @ wrench
         total = self.body.total
-        motion = np.empty((count, count + self._wrenches))
+        wrenches = 6 * len(standing)
+        motion = np.empty((count, count + wrenches))
         motion[:, :count] = body.mass
-        strict, sought = np.zeros((ROOT + self._wrenches, motion.shape[1])), np.empty(ROOT + self._wrenches)
-        for place, foot in zip(range(0, self._wrenches, 6), body.feet, strict=True):
+        strict, sought = np.zeros((ROOT + wrenches, motion.shape[1])), np.empty(ROOT + wrenches)
+        for place, foot in zip(range(0, wrenches, 6), standing, strict=True):
             motion[:, count + place : count + place + 6] = -total * foot.jacobian.T
             strict[ROOT + place : ROOT + place + 6, :count] = foot.jacobian
             sought[ROOT + place : ROOT + place + 6] = self._flattening(foot) - foot.drift
         strict[:ROOT], sought[:ROOT] = motion[:ROOT] / total, -force[:ROOT] / total
         origin, free = _solutions(strict, sought)
         rows, wanted = self._wanted(body, q, target, added)
-        bounds = self._bounds.copy()
-        bounds[self._torque_rows] = motion[rates[self._limited]]
-        lower, upper = self._ends(q, v, force[rates])
+        bounds = stance.bounds.copy()
+        bounds[stance.torques] = motion[rates[self._limited]]
+        lower, upper = self._ends(q, v, force[rates], stance.least)
         reached = bounds @ origin
         program = rows @ free, wanted - rows @ origin
         limits = bounds @ free, lower - reached, upper - reached
@@ -175,7 +206,8 @@ class WholeBodyController:
                 *nothing, hands, capture, f"no torques keep {self.body.agent.name}'s limits: {found.reason}"
             )
         x = origin + free @ found.x
-        feet = (total * x[count:]).reshape(-1, 6)
+        feet = np.zeros((len(body.feet), 6))
+        feet[list(stance.feet)] = (total * x[count:]).reshape(-1, 6)
         return Command(motion[rates] @ x + force[rates], x[:count], feet, hands, capture)
 
     def _flattening(self, sole: FrameMotion) -> Array:
@@ -184,6 +216,14 @@ class WholeBodyController:
         return self._soles.acceleration(
             np.array([*(-sole.place[2] * up), -up[1], up[0], 0.0]), -sole.velocity
         )
+
+    def _swinging(self, sole: FrameMotion, course: Course) -> Array:
+        """Acceleration that brings a sole to its course, in its own axes, shape (6,)."""
+        axes = np.kron(np.eye(2), sole.turn.T)
+        off = axes @ _off(course, sole), axes @ course.velocity - sole.velocity
+        wanted = axes @ course.acceleration + self._soles.acceleration(*off)
+        wanted[:3] -= np.cross(sole.velocity[3:], sole.velocity[:3])  # its axes turn
+        return wanted
 
     def _hands(self, body: BodyMotion, target: Target) -> tuple[Array, list[Array]]:
         """Wrenches on the hands, and what the feedback adds to each one's planned acceleration."""
@@ -201,8 +241,9 @@ class WholeBodyController:
         rates, count, mass = self.body.rates, self._count, self.body.total
         tasks = list(self._tasks(body, target, added))
         size = sum(len(numbers) for _, numbers in tasks)
-        wanted, places = [numbers for _, numbers in tasks], self.body.places
-        rows = np.zeros((size + len(rates) + self._wrenches, count + self._wrenches))
+        wanted, places, stance = [numbers for _, numbers in tasks], self.body.places, list(target.stance)
+        standing = [body.feet[foot] for foot in stance]
+        rows = np.zeros((size + len(rates) + 6 * len(standing), count + 6 * len(standing)))
         np.concatenate([task for task, _ in tasks], out=rows[:size, :count])
         scale = LEVEL * np.sqrt(body.mass[rates, rates])
         rows[range(size, size + len(rates)), rates] = scale
@@ -210,16 +251,20 @@ class WholeBodyController:
             (target.coordinates - q)[places], (target.velocity - body.velocity)[rates]
         )
         wanted.append(scale * (target.acceleration[rates] + posture))
-        scale = np.tile(np.repeat([mass**0.5, mass / body.spin**0.5], 3), len(body.feet))
-        wrenches = wrench_weights(body, scale) * scale
+        scale = np.tile(np.repeat([mass**0.5, mass / body.spin**0.5], 3), len(standing))
+        wrenches = wrench_weights(standing, scale) * scale
         rows[size + len(rates) :, count:] = wrenches
-        wanted.append(wrenches @ target.feet_wrenches.ravel() / mass)
+        wanted.append(wrenches @ target.feet_wrenches[stance].ravel() / mass)
         return rows, np.concatenate(wanted)
 
     def _tasks(self, body: BodyMotion, target: Target, added: list[Array]) -> Iterator[tuple[Array, Array]]:
-        """Of centre of mass, hands and trunk: rows over accelerations, and numbers."""
+        """Of swing feet, centre of mass, hands and trunk: rows over accelerations, and numbers."""
         gains, center, share = self._gains, body.center, self._share
-        own = _pendulum(body)
+        scale = np.sqrt(np.repeat([self.body.total, body.spin], 3) / LEVEL)
+        for foot, swing in target.swings.items():
+            sole = body.feet[foot]
+            yield scale[:, None] * sole.jacobian, scale * (self._swinging(sole, swing) - sole.drift)
+        own = _pendulum(body, target.stance)
         off, slow = target.center.place - center.place, target.center.velocity - center.velocity
         change = gains.acceleration(off, slow)
         change[:2] = gains.frequency * own * off[:2] + (gains.frequency + own) * slow[:2]
@@ -236,40 +281,40 @@ class WholeBodyController:
         turning += course.acceleration - trunk.drift
         yield weight * trunk.jacobian[3:], weight * turning[3:]
 
-    def _ends(self, q: Array, v: Array, bias: Array) -> tuple[Array, Array]:
+    def _ends(self, q: Array, v: Array, bias: Array, cones: Array) -> tuple[Array, Array]:
         """Lower and upper limits of cones, torques, and accelerations of joints."""
         limits = self.limits
         torque, bias = limits.torque[self._limited], bias[self._limited]
         least, most = limits.accelerations(q[self.body.places], v[self.body.rates], self._gains)
-        lower = np.concatenate([self._least, -torque - bias, least[self._bounded]])
-        upper = np.concatenate([np.full(len(self._least), np.inf), torque - bias, most[self._bounded]])
+        lower = np.concatenate([cones, -torque - bias, least[self._bounded]])
+        upper = np.concatenate([np.full(len(cones), np.inf), torque - bias, most[self._bounded]])
         return lower, upper
 
 
-def wrench_weights(body: BodyMotion, scale: Array) -> Array:
+def wrench_weights(feet: Sequence[FrameMotion], scale: Array) -> Array:
     """Weights of the feet's wrenches: one of internal ones, which move nothing, and little of the others.
 
     Args:
-        body: on its feet.
+        feet: that stand.
         scale: of each number of the wrenches, shape (w,).
     Returns:
         A symmetric matrix, shape (w, w).
     """
-    moving = np.hstack([foot.jacobian[:, :ROOT].T for foot in body.feet]) / scale
+    moving = np.hstack([foot.jacobian[:, :ROOT].T for foot in feet]) / scale
     share = moving.T @ np.linalg.solve(moving @ moving.T, moving)
     return np.asarray(np.eye(len(scale)) - (1.0 - LEVEL**1.5) * share)
 
 
-def _pendulum(body: BodyMotion) -> float:
-    """Rate w0 at which the centre of mass falls away from above the feet [1/s]."""
-    height = body.center.place[2] - sum(foot.place[2] for foot in body.feet) / len(body.feet)
+def _pendulum(body: BodyMotion, stance: tuple[int, ...]) -> float:
+    """Rate w0 at which the centre of mass falls away from above the feet that stand [1/s]."""
+    height = body.center.place[2] - sum(body.feet[foot].place[2] for foot in stance) / len(stance)
     return math.sqrt(GRAVITY / max(height, LOW))
 
 
 def _capture(body: BodyMotion, target: Target) -> Array:
     """Horizontal distance of the capture point from the planned one [m], shape (2,)."""
     off, faster = body.center.place - target.center.place, body.center.velocity - target.center.velocity
-    return np.asarray((off + faster / _pendulum(body))[:2])
+    return np.asarray((off + faster / _pendulum(body, target.stance))[:2])
 
 
 def _off(course: Course, frame: FrameMotion) -> Array:

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.floating_base import ROOT, FloatingBody
+from evodesign.posture.results import AgentPosture
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.model import Tree
 
@@ -45,6 +46,40 @@ class FrameMotion:
     jacobian: Array
     velocity: Array
     drift: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Leg:
+    """Places of a leg's joints in the world [m], shape (3,) each.
+
+    Args:
+        top: of its first joint.
+        hip: of its last joint before the knee.
+        knee: of the joint that is far from both ends.
+        ankle: of its last joint.
+        knee_joint: the knee's place in the agent's order of joints.
+    """
+
+    top: Array
+    hip: Array
+    knee: Array
+    ankle: Array
+    knee_joint: int
+
+    @property
+    def length(self) -> float:
+        """Of thigh and shank together [m]."""
+        return float(np.linalg.norm(self.hip - self.knee) + np.linalg.norm(self.knee - self.ankle))
+
+    @property
+    def height(self) -> float:
+        """Of the hip above a floor at zero on which the foot stands, with the leg straight [m]."""
+        return self.length + float(self.ankle[2])
+
+    def span(self, flexion: float) -> float:
+        """Distance of hip and ankle with a knee that is bent by an angle [rad]."""
+        thigh, shank = np.linalg.norm(self.hip - self.knee), np.linalg.norm(self.knee - self.ankle)
+        return float(np.sqrt(thigh**2 + shank**2 + 2.0 * thigh * shank * np.cos(flexion)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -123,6 +158,50 @@ class MovingBody:
         x, y, z, w = pin.Quaternion(turn).coeffs()
         root = np.concatenate([self.agent.turn @ base_position, [w, x, y, z]])
         return self.coordinates(root, np.array([joints[name] for name in self.agent.joints]))
+
+    def moved(self, q: Array, step: Array) -> Array:
+        """A configuration after a step in the directions of its velocities, shape (v,)."""
+        return np.asarray(pin.integrate(self._model, q, step))
+
+    def posture(self, q: Array, v: Array, torques: Array, feet: Array, hands: Array) -> AgentPosture:
+        """A state as a posture in the agent's frame.
+
+        Args:
+            q: configuration.
+            v: velocities.
+            torques: of the joints, in the agent's order [N m].
+            feet: wrenches on the feet in their sole frames, shape (feet, 6).
+            hands: wrenches on the hands in world axes, shape (hands, 6).
+        """
+        agent, turn = self.agent, self.agent.turn.T
+        root = pin.Quaternion(q[3:7]).toRotationMatrix()
+        wrenches = {foot.name: wrench for foot, wrench in zip(agent.feet, feet, strict=True)}
+        for hand, wrench in zip(agent.hands, hands, strict=True):
+            wrenches[hand.name] = np.concatenate([turn @ wrench[:3], turn @ wrench[3:]])
+        return AgentPosture(
+            base_position=turn @ q[:3],
+            base_angles=np.array(pin.rpy.matrixToRpy(turn @ root)),
+            joints=dict(zip(agent.joints, q[self.places].tolist(), strict=True)),
+            torques=dict(zip(agent.joints, torques.tolist(), strict=True)),
+            wrenches=wrenches,
+            speeds=dict(zip(agent.joints, v[self.rates].tolist(), strict=True)),
+        )
+
+    def legs(self, q: Array) -> list[Leg]:
+        """Each foot's leg at a configuration."""
+        model, legs = self._model, []
+        pin.forwardKinematics(model, self._data, q)
+        chains = [list(model.supports[model.frames[foot].parentJoint]) for foot in self._feet]
+        for chain in chains:
+            joints = [
+                each for each in chain if not any(each in other for other in chains if other is not chain)
+            ]
+            places = np.array([self._data.oMi[each].translation for each in joints])
+            to_hip, to_ankle = (np.linalg.norm(places - end, axis=1) for end in (places[0], places[-1]))
+            knee = int(np.argmax(np.minimum(to_hip, to_ankle)))
+            number = int(np.flatnonzero(self.rates == model.idx_vs[joints[knee]])[0])
+            legs.append(Leg(places[0], places[knee - 1], places[knee], places[-1], number))
+        return legs
 
     def inverse_dynamics(self, q: Array, v: Array, acceleration: Array, feet: Array, hands: Array) -> Array:
         """Forces that a motion takes beside those of feet and hands, by pinocchio's RNEA, shape (v,).

@@ -5,8 +5,8 @@ A hold stays what it is. Those of a lift are sampled at the controller's moments
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,6 +60,7 @@ class Target:
         hands: of the agent, in its order.
         feet_wrenches: on the feet in their sole frames, shape (feet, 6).
         hand_wrenches: on the hands in world axes, about the grasp points, shape (hands, 6).
+        swings: of the soles that do not stand, by their place among the agent's feet.
     """
 
     coordinates: Array
@@ -70,6 +71,12 @@ class Target:
     hands: tuple[Course, ...]
     feet_wrenches: Array
     hand_wrenches: Array
+    swings: Mapping[int, Course] = field(default_factory=dict)
+
+    @property
+    def stance(self) -> tuple[int, ...]:
+        """The feet that stand, by their place among the agent's."""
+        return tuple(foot for foot in range(len(self.feet_wrenches)) if foot not in self.swings)
 
 
 def target_of(body: MovingBody, posture: AgentPosture, motion: AgentMotion | None = None) -> Target:

@@ -27,7 +27,7 @@ from evodesign.mechanics.floating_base import ROOT
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture, Array
 from evodesign.simulation.drake_model import drake_scene, transform_of
-from evodesign.simulation.engine import EngineState, placed_links
+from evodesign.simulation.engine import EngineState, placed_links, tilt_of
 from evodesign.tree.model import Tree
 
 Moment = tuple[Array, Array]
@@ -157,6 +157,11 @@ class DrakeEngine:
     def load(self) -> Array:
         """As `Engine`."""
         return self._pose(self._load)[:3]
+
+    @property
+    def tilt(self) -> float:
+        """As `Engine`."""
+        return tilt_of(np.array(matrix_from_wxyz(self._pose(self._load)[3:].tolist())))
 
     def state(self, name: str) -> EngineState:
         """As `Engine`."""

@@ -11,6 +11,7 @@ beginning of a step, and d taken at its end.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
@@ -65,6 +66,11 @@ class Engine(Protocol):
         """Place of the load's centre in the world [m], shape (3,)."""
         ...
 
+    @property
+    def tilt(self) -> float:
+        """Angle of the load from level [rad]."""
+        ...
+
     def state(self, name: str) -> EngineState:
         """Of an agent."""
         ...
@@ -116,6 +122,11 @@ def engine_named(name: EngineName) -> EngineMaker:
     from evodesign.simulation.mujoco_engine import MujocoEngine
 
     return MujocoEngine
+
+
+def tilt_of(turn: Array) -> float:
+    """Angle of a frame's z from the world's [rad], of its turn, shape (3, 3)."""
+    return math.acos(min(1.0, max(-1.0, float(turn[2, 2]))))
 
 
 def placed_links(agent: Agent, tree: Tree, posture: AgentPosture) -> Mapping[str, Placement]:

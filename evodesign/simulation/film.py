@@ -13,6 +13,7 @@ from PIL import Image
 
 from evodesign.errors import InputError
 from evodesign.posture.results import Array
+from evodesign.simulation.carry import CarryOutcome
 from evodesign.simulation.mujoco_engine import MujocoEngine
 from evodesign.simulation.push import PushOutcome, PushTest
 from evodesign.simulation.rollout import FRAME
@@ -34,12 +35,28 @@ class Filmed:
         states: `qpos` at frames, shape (f, q).
         forces: on a body at frames, in the world [N], shape (f, 3); none for no arrows.
         body: its number.
+        followed: number of the body that the camera follows over the floor; None: it stays.
+        azimuth: from where the camera looks, about z [deg].
     """
 
     model: Any
     states: Array
     forces: Array = field(default_factory=lambda: np.zeros((0, 3)))
     body: int = 0
+    followed: int | None = None
+    azimuth: float = 115.0
+
+
+def carried_film(outcome: CarryOutcome) -> Filmed:
+    """A walk with the load, seen from beside the robot and whom it faces.
+
+    Raises:
+        InputError: nobody began to walk.
+    """
+    if outcome.scene is None or not isinstance(outcome.scene.engine, MujocoEngine):
+        raise InputError("--video", "", "a walk to be shown", outcome.reason)
+    found = outcome.scene.engine.found
+    return Filmed(found.model, outcome.states, followed=found.load, azimuth=100.0)
 
 
 def pushed_film(test: PushTest, outcome: PushOutcome) -> Filmed:
@@ -79,7 +96,8 @@ def film(shown: Sequence[Filmed]) -> bytes:
 
 def _pictures(shown: Filmed) -> Iterator[Image.Image]:
     data, camera = mujoco.MjData(shown.model), mujoco.MjvCamera()
-    camera.lookat, camera.distance, camera.azimuth, camera.elevation = [0.0, 0.0, 0.9], 3.2, 115.0, -12.0
+    camera.lookat, camera.distance = [0.0, 0.0, 0.9], 3.2
+    camera.azimuth, camera.elevation = shown.azimuth, -12.0
     try:
         renderer = mujoco.Renderer(shown.model, HEIGHT, WIDTH)
     except (ImportError, AttributeError, RuntimeError, Warning, mujoco.FatalError) as error:  # of OpenGL
@@ -89,6 +107,8 @@ def _pictures(shown: Filmed) -> Iterator[Image.Image]:
         for number in range(0, len(shown.states), EVERY):
             data.qpos = shown.states[number]
             mujoco.mj_forward(shown.model, data)
+            if shown.followed is not None:
+                camera.lookat[:2] = data.xpos[shown.followed][:2]
             renderer.update_scene(data, camera)
             if number < len(shown.forces) and shown.forces[number].any():
                 _draw_arrow(renderer.scene, data.xipos[shown.body], shown.forces[number])

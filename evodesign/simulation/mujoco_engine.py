@@ -10,7 +10,7 @@ import numpy as np
 from evodesign.control.gains import Feedback
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.results import AgentPosture, Array
-from evodesign.simulation.engine import EngineState
+from evodesign.simulation.engine import EngineState, tilt_of
 from evodesign.simulation.feedback import joint_inertias, set_damping
 from evodesign.simulation.model import simulated_scene
 from evodesign.tree.model import Tree
@@ -56,6 +56,11 @@ class MujocoEngine:
     def load(self) -> Array:
         """As `Engine`."""
         return np.asarray(self.found.data.xpos[self.found.load])
+
+    @property
+    def tilt(self) -> float:
+        """As `Engine`."""
+        return tilt_of(self.found.data.xmat[self.found.load].reshape(3, 3))
 
     def state(self, name: str) -> EngineState:
         """As `Engine`."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -18,17 +18,11 @@ from evodesign.control.controller import Command
 from evodesign.control.limits import WATCHED_SECONDS
 from evodesign.posture.results import Array
 from evodesign.simulation.controlled import ControlledScene, Snapshot
-from evodesign.simulation.outcome import FALLEN
 from evodesign.simulation.rollout import FRAME
+from evodesign.simulation.scene_record import SceneRecord
 
 PUSH_SECONDS = 0.1
 """How long a push lasts [s], unless another time is said."""
-
-LOAD_OFF = 0.1
-"""How far the load may be from its path [m]."""
-
-BROKEN_SECONDS = 0.05
-"""How long a limit may be broken [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,12 +43,6 @@ BACK = Recovery(0.01, 0.2)
 
 SURVIVING = Recovery(0.04, 0.1)
 """Who is so near will be back: of 403 pushes of bisections none was lost after it, and none after 5 cm."""
-
-BEYOND = math.radians(2.0)
-"""By which a joint may push its stop in [rad]."""
-
-EXPLODED = 300.0
-"""A speed of a joint [rad/s] that nobody's is: the simulation explodes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,22 +158,19 @@ class PushTest:
         return float(np.linalg.norm(self.scene.engine.load - [0.0, 0.0, height]))
 
 
-class _PushRecord:
+class _PushRecord(SceneRecord):
     """What has been seen since a push.
 
     Attributes:
-        seconds: since the push [s].
         last: when capture points or load were off last [s].
-        reason: why the push is not survived.
-        load_off, capture: largest so far [m].
-        saturated: for how long [s].
+        capture: largest distance of the pushed agent's capture point from the planned one so far [m].
+        saturated: for how long one of its motors was at its limit [s].
     """
 
     def __init__(self, scene: ControlledScene, pushed: str, awaited: Recovery) -> None:
-        self._scene, self._pushed, self._awaited = scene, pushed, awaited
-        self.seconds = self.last = self.load_off = self.capture = self.saturated = 0.0
-        self.reason = ""
-        self._broken: dict[str, float] = {}
+        super().__init__(scene)
+        self._pushed, self._awaited = pushed, awaited
+        self.last = self.capture = self.saturated = 0.0
         self._offs: deque[Array] = deque(maxlen=1 + round(awaited.seconds / scene.timing.step))
 
     @property
@@ -194,45 +179,15 @@ class _PushRecord:
         nearer = (self._offs[-1] <= np.maximum(self._offs[0], BACK.within)).all()
         return bool(nearer) and not self._broken and self.seconds - self.last >= self._awaited.seconds
 
-    def saw(self, commands: Mapping[str, Command], load_off: float) -> None:
-        """Another answer of the controllers, and where everything is after it."""
-        scene, step = self._scene, self._scene.timing.step
-        self.seconds += step
-        engine, targets = scene.engine, scene.targets()
-        if not (np.isfinite(engine.coordinates).all() and np.abs(engine.velocities).max() < EXPLODED):
-            self.reason = "the simulation explodes"
-            return
-        self.load_off = max(self.load_off, load_off)
-        if load_off > LOAD_OFF:
-            self.reason = f"the load is more than {100 * LOAD_OFF:g} cm off its path"
+    def saw(self, commands: Mapping[str, Command], load_off: float) -> bool:
+        """As `SceneRecord`."""
+        if not super().saw(commands, load_off):
+            return False
         off = {name: float(np.linalg.norm(each.capture)) for name, each in commands.items()}
         self.capture = max(self.capture, off[self._pushed])
         self._offs.append(np.array([*off.values(), load_off]))
         if self._offs[-1].max() > self._awaited.within:
             self.last = self.seconds
-        for name in scene.controllers:
-            root = engine.state(name).root[:3]
-            if np.linalg.norm(root - targets[name].coordinates[:3]) > FALLEN:
-                self.reason = f"{name} falls"
-        broken = {what for name, each in commands.items() for what in self._broken_by(name, each)}
-        self._broken = {what: self._broken.get(what, 0.0) + step for what in sorted(broken)}
-        lasting = next(
-            (what for what, time in self._broken.items() if time > BROKEN_SECONDS + step / 2), None
-        )
-        self.reason = self.reason or lasting or ""
-        torques, limits = commands[self._pushed].torques, scene.controllers[self._pushed].limits.torque
-        if (np.abs(torques) >= (1.0 - 1e-6) * limits).any():
-            self.saturated += step
-
-    def _broken_by(self, name: str, command: Command) -> Iterator[str]:
-        """Sentences about limits of an agent that are broken now."""
-        if command.reason:
-            yield command.reason
-        controller, (q, v) = self._scene.controllers[name], self._scene.state(name)
-        limits, joints = controller.limits, controller.body.agent.joints
-        positions, speeds = q[controller.body.places], v[controller.body.rates]
-        beyond = np.maximum(limits.lower - positions, positions - limits.upper) > BEYOND
-        for place in np.flatnonzero(beyond):
-            yield f"{name}'s {joints[place]} is beyond its range"
-        for place in np.flatnonzero(np.abs(speeds) > 1.01 * limits.speed):
-            yield f"{name}'s {joints[place]} is faster than it can be"
+        if self.saturates(self._pushed, commands[self._pushed]):
+            self.saturated += self._scene.timing.step
+        return True

@@ -164,7 +164,7 @@ class PushedPlan:
             agent.name: target_of(MovingBody(agent, self.trees[agent.name]), self.postures[agent.name])
             for agent in self.scene.agents
         }
-        controlled = self._controlled(lambda _: targets, conditions)
+        controlled = self.controlled(lambda _: targets, conditions)
         _advance(controlled, SETTLING)
         return PushTest(
             controlled, np.array([self.height]), controlled.snapshot(), is_symmetric=self.is_symmetric
@@ -182,7 +182,7 @@ class PushedPlan:
         center, wrenches = replace(target.center, place=place), np.tile(weight, (len(feet), 1))
         standing = {robot.name: replace(target, center=center, feet_wrenches=wrenches)}
         single = replace(self, scene=self.scene.only(robot), postures={robot.name: posture}, height=0.0)
-        controlled = single._controlled(lambda _: standing, conditions)
+        controlled = single.controlled(lambda _: standing, conditions)
         _advance(controlled, SETTLING)
         while controlled.number * conditions.timing.step < SHIFTING:
             if np.linalg.norm(controlled.advance()[robot.name].capture) < ABOVE:
@@ -199,14 +199,20 @@ class PushedPlan:
             return {name: each[min(number, len(times) - 1)] for name, each in planned.items()}
 
         tests: dict[str, PushTest] = {}
-        controlled, mirrored = self._controlled(targets, conditions), self.is_symmetric
+        controlled, mirrored = self.controlled(targets, conditions), self.is_symmetric
         for share in LIFT_SHARES:
             _advance(controlled, share * seconds - controlled.number * step)
             name = f"{self.name}, after {share * seconds:.2g} s"
             tests[name] = PushTest(controlled, heights, controlled.snapshot(), is_symmetric=mirrored)
         return tests
 
-    def _controlled(self, targets: Targets, conditions: PushConditions) -> ControlledScene:
+    def controlled(self, targets: Targets, conditions: PushConditions) -> ControlledScene:
+        """Everything at the beginning, under controllers.
+
+        Args:
+            targets: of the controllers.
+            conditions: of everything else.
+        """
         return ControlledScene(
             conditions.changed(self.scene),
             self.trees,

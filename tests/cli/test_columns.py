@@ -166,6 +166,7 @@ LINES: dict[str, tuple[tuple[object, ...], ...]] = {
         ("simulate", "run", 1, "--from", 0.9, "--to", 2.5, "--knots", 8, "--profile", "free"),
     ),
     "push": (("push", "run", 1, "--height", 0.8, "--direction", 90, "--alone"),),
+    "carry": (("carry", "run", 1, "--person", "tall", "--distance", 0.05),),
     "polish": (("polish", "run", 1, "--evaluations", 2),),
     "check": (
         ("check", "small.toml"),

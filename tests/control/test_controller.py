@@ -142,7 +142,7 @@ def test_wrenches_by_which_feet_work_against_each_other_have_the_weight_of_balan
     world = left.turn @ force, left.turn @ moment + np.cross(left.place - right.place, left.turn @ force)
     internal = np.concatenate([force, moment, *(-right.turn.T @ each for each in world)])
     scale = np.repeat([2.0, 5.0, 2.0, 5.0], 3)
-    weights = wrench_weights(body, scale)
+    weights = wrench_weights(body.feet, scale)
     assert weights @ (scale * internal) == pytest.approx(scale * internal)
     moving = np.concatenate([foot.jacobian[:, :ROOT] for foot in body.feet]) @ generator.normal(size=ROOT)
     assert weights @ (moving / scale) == pytest.approx(LEVEL**1.5 * moving / scale)
