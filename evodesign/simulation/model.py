@@ -98,6 +98,10 @@ class SimulatedScene:
         return np.asarray(self.data.geom_xpos[sole] - down)
 
 
+def _outcomes_tell(warning: str) -> None:
+    """Take a warning of MuJoCo's, which else goes into MUJOCO_LOG.TXT where a command was started."""
+
+
 def simulated_scene(
     scene: Scene,
     trees: Mapping[str, Tree],
@@ -116,6 +120,8 @@ def simulated_scene(
     Raises:
         ModelError: MuJoCo cannot hold a tree: a link that moves has no mass.
     """
+    if mujoco.get_mju_user_warning() is None:
+        mujoco.set_mju_user_warning(_outcomes_tell)
     spec = mujoco.MjSpec()
     spec.option.timestep, spec.option.gravity = step, [0.0, 0.0, -GRAVITY]
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_EULER

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -150,6 +151,16 @@ def test_soles_stay_on_the_floor_and_hands_on_the_load(
     places, points = (np.array(each) for each in zip(*grips, strict=True))
     apart = np.linalg.norm(places - places[:1], axis=1)
     assert apart == pytest.approx(np.linalg.norm(points - points[:1], axis=1), abs=1e-4)
+
+
+def test_an_explosion_in_mujoco_is_an_outcome_and_leaves_no_file_behind(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    test = Pendulum(0.2).test()
+    assert test.pushed(Push(1e30, 0.0)).reason
+    assert test.pushed(Push(0.1, 0.0)).survived
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.needs_drake
