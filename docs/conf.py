@@ -24,7 +24,7 @@ CONTENTS = {
         f"docs/{name}"
         for name in (
             *("problem_file", "your_robot", "people", "person", "trust", "default", "sharing"),
-            *("disturbances", "motion", "control", "hardware", "actuators", "materials"),
+            *("disturbances", "motion", "control", "carry", "hardware", "actuators", "materials"),
         )
     ],
     "Searching": [

@@ -90,6 +90,12 @@ def carry(
     else:
         to = f"{distance:g} m to {direction:g} degrees"
         console().print(carries_table(f"{logged.header.problem_name}: design {design} carries {to}", cases))
+        show_notes(
+            f"{name} in {case.name}: torque at its limit in {', '.join(agent.saturated)}"
+            for case in cases
+            for name, agent in case.outcome.agents.items()
+            if agent.saturated
+        )
     damage.end(logged, accepted=damaged)
 
 

@@ -38,11 +38,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
 
 import numpy as np
 import pinocchio as pin
-import scipy
 from numpy.typing import NDArray
 from scipy.linalg import lapack
 
@@ -50,9 +48,10 @@ from evodesign.control.gains import Feedback
 from evodesign.control.limits import JointLimits
 from evodesign.control.moving_body import BodyMotion, FrameMotion, MovingBody
 from evodesign.control.quadratic import least_squares
+from evodesign.control.support import supports_of
 from evodesign.control.target import Course, Target
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.contact import Ground, foot_margins
+from evodesign.mechanics.contact import Ground
 from evodesign.mechanics.floating_base import ROOT
 
 Array = NDArray[np.float64]
@@ -99,23 +98,6 @@ class HandShare:
     inertia: float
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Stance:
-    """On which feet an agent stands, and the limits of its program then.
-
-    Args:
-        feet: that stand, by their place among the agent's.
-        bounds: rows over accelerations and wrenches per mass; those of torques are still empty.
-        torques: rows of torques.
-        least: lower limits of the rows of cones.
-    """
-
-    feet: tuple[int, ...]
-    bounds: Array
-    torques: slice
-    least: Array
-
-
 class WholeBodyController:
     """Of one agent on feet.
 
@@ -141,27 +123,8 @@ class WholeBodyController:
         self._bounded = np.flatnonzero(
             np.isfinite(limits.lower) | np.isfinite(limits.upper) | np.isfinite(limits.speed)
         )
-        self._count, every = body.size, range(len(body.agent.feet))
-        self._stances = {
-            feet: self._stance(feet, ground)
-            for count in range(1, len(every) + 1)
-            for feet in combinations(every, count)
-        }
-
-    def _stance(self, feet: tuple[int, ...], ground: Ground) -> _Stance:
-        """The limits of an agent that stands on some of its feet."""
-        body, units = self.body, [*np.eye(6), np.zeros(6)]
-        soles = [body.agent.feet[foot].sole for foot in feet]
-        margins = [np.array([foot_margins(e, sole, ground) for e in units]) for sole in soles]
-        cones = scipy.linalg.block_diag(*((each[:-1] - each[-1]).T for each in margins))
-        bounds = np.zeros(
-            (len(cones) + len(self._limited) + len(self._bounded), body.size + 6 * len(margins))
-        )
-        bounds[: len(cones), body.size :] = cones
-        ends = range(len(bounds) - len(self._bounded), len(bounds))
-        bounds[ends, body.rates[self._bounded]] = 1.0
-        least = -np.concatenate([each[-1] for each in margins]) / body.total
-        return _Stance(feet, bounds, slice(len(cones), len(cones) + len(self._limited)), least)
+        self._count = body.size
+        self._supports = supports_of(body, ground, self._limited, self._bounded)
 
     def command(self, q: Array, v: Array, target: Target) -> Command:
         """The torques at a state.
@@ -172,8 +135,8 @@ class WholeBodyController:
             target: at this moment.
         """
         body, count, rates = self.body.at(q, v), self._count, self.body.rates
-        stance = self._stances[target.stance]
-        standing = [body.feet[foot] for foot in stance.feet]
+        support = self._supports[target.stance]
+        standing = [body.feet[foot] for foot in support.feet]
         hands, added = self._hands(body, target)
         capture = _capture(body, target)
         force = body.bias.copy()
@@ -191,9 +154,9 @@ class WholeBodyController:
         strict[:ROOT], sought[:ROOT] = motion[:ROOT] / total, -force[:ROOT] / total
         origin, free = _solutions(strict, sought)
         rows, wanted = self._wanted(body, q, target, added)
-        bounds = stance.bounds.copy()
-        bounds[stance.torques] = motion[rates[self._limited]]
-        lower, upper = self._ends(q, v, force[rates], stance.least)
+        bounds = support.bounds.copy()
+        bounds[support.torques] = motion[rates[self._limited]]
+        lower, upper = self._ends(q, v, force[rates], support.least)
         reached = bounds @ origin
         program = rows @ free, wanted - rows @ origin
         limits = bounds @ free, lower - reached, upper - reached
@@ -207,7 +170,7 @@ class WholeBodyController:
             )
         x = origin + free @ found.x
         feet = np.zeros((len(body.feet), 6))
-        feet[list(stance.feet)] = (total * x[count:]).reshape(-1, 6)
+        feet[list(support.feet)] = (total * x[count:]).reshape(-1, 6)
         return Command(motion[rates] @ x + force[rates], x[:count], feet, hands, capture)
 
     def _flattening(self, sole: FrameMotion) -> Array:

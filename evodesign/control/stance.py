@@ -3,7 +3,7 @@
 Hands and load stay where they are, but
 
     feet         stand under the hips, parallel, about the point in which the floor's pressure acts
-    body         moves to the side until that point is in the middle between the hands
+    body         moves to the side until that point is in the middle between both hands
     height       is that in which a knee is bent by `KNEE` at the end of a step
     trunk, root  look ahead, as inclined as in the hold
 
@@ -28,7 +28,7 @@ from evodesign.control.limits import JointLimits
 from evodesign.control.moving_body import BodyMotion, MovingBody
 from evodesign.control.quadratic import least_squares
 from evodesign.control.target import Course, Target
-from evodesign.mechanics.agent import TO_THE_LEFT, Agent
+from evodesign.mechanics.agent import SIDES, TO_THE_LEFT, Agent
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.floating_base import ROOT
 
@@ -55,7 +55,7 @@ STEPS, LARGEST, CONVERGED = 200, 0.3, 1e-5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Standing:
+class ReadyStance:
     """How an agent stands that is about to walk.
 
     Args:
@@ -92,7 +92,7 @@ class _Places:
     root: Array
 
 
-def standing(body: MovingBody, hold: Target, limits: JointLimits, stride: Array) -> Standing:
+def ready_stance(body: MovingBody, hold: Target, limits: JointLimits, stride: Array) -> ReadyStance:
     """How an agent stands that is about to walk.
 
     Args:
@@ -105,14 +105,16 @@ def standing(body: MovingBody, hold: Target, limits: JointLimits, stride: Array)
     weight = float(body.total * GRAVITY - hold.hand_wrenches[:, 2].sum())
     pressure = _pressure(motion, hold, body.total, weight)
     left = body.agent.turn[:2, 1]
-    aside = -(pressure @ left) * left
-    places = _places(body, motion, hold, stride, pressure + aside)
-    places.center[:] += aside * weight / (body.total * GRAVITY)
+    hands = [hand.place[:2] for hand in motion.hands]
+    middle = np.mean(hands, axis=0) if len(hands) == len(SIDES) else pressure
+    aside = (middle - pressure) @ left * left
+    center = motion.center.place[:2] + aside * weight / (body.total * GRAVITY)
+    places = replace(_places(body, motion, hold, stride, pressure + aside), center=center)
     q = _solved(body, hold, limits, places)
     found = body.at(q, still)
     carried = -hold.hand_wrenches[:, 2] / GRAVITY @ [hand.place[2] for hand in found.hands]
     force = np.array([*-hold.hand_wrenches[:, :2].sum(axis=0), weight]) / len(places.soles)
-    return Standing(
+    return ReadyStance(
         target=replace(
             hold,
             coordinates=q,
@@ -152,7 +154,7 @@ def _places(body: MovingBody, motion: BodyMotion, hold: Target, stride: Array, p
     root = pin.Quaternion(hold.coordinates[3:7]).toRotationMatrix()
     return _Places(
         tuple(soles),
-        motion.center.place[:2].copy(),
+        motion.center.place[:2],
         float(hold.coordinates[2]) - lowered,
         _ahead(agent, motion.trunk.turn),
         _ahead(agent, root),

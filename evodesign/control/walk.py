@@ -19,7 +19,7 @@ from evodesign.control.footsteps import Gait, progress, swing
 from evodesign.control.limits import JointLimits
 from evodesign.control.moving_body import MovingBody
 from evodesign.control.pendulum import PendulumCourse, pendulum_course
-from evodesign.control.stance import Standing, standing
+from evodesign.control.stance import ReadyStance, ready_stance
 from evodesign.control.target import Course, Target
 from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.balance import GRAVITY
@@ -52,7 +52,7 @@ class Way:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class Footstep:
     """A swing of a foot.
 
     Args:
@@ -74,20 +74,20 @@ class Walker:
 
     Args:
         agent: who walks.
-        standing: before the first step.
+        stance: before the first step.
         gait: of all.
         steps: in their order.
         pendulum: of the agent.
     """
 
     agent: Agent
-    standing: Standing
+    stance: ReadyStance
     gait: Gait
-    steps: tuple[Step, ...]
+    steps: tuple[Footstep, ...]
     pendulum: PendulumCourse
 
     @classmethod
-    def of(cls, body: MovingBody, own: Standing, gait: Gait, way: Way, *, passing: bool) -> Walker:
+    def of(cls, body: MovingBody, own: ReadyStance, gait: Gait, way: Way, *, passing: bool) -> Walker:
         """The part of an agent that stands ready.
 
         Args:
@@ -109,7 +109,7 @@ class Walker:
             if number:
                 times.append(times[-1] + gait.shifting)
             end = first[foot] + np.append(far * way.along, 0.0)
-            steps.append(Step(foot, times[-1], places[foot], end))
+            steps.append(Footstep(foot, times[-1], places[foot], end))
             times.append(times[-1] + gait.swinging)
             pressures += [places[other][:2]] * 2
             places[foot] = end
@@ -127,7 +127,7 @@ class Walker:
     def moved(self, time: float) -> tuple[Array, Array, Array]:
         """How far the body is from where it stood [m], with velocity and acceleration, shape (3,) each."""
         center, velocity, acceleration, _ = self.pendulum.at(time)
-        return _level(center - self.standing.pressure), _level(velocity), _level(acceleration)
+        return _level(center - self.stance.pressure), _level(velocity), _level(acceleration)
 
     def target(self, time: float, load: tuple[Array, Array, Array], share: HandShare | None) -> Target:
         """What the agent is to do.
@@ -137,7 +137,7 @@ class Walker:
             load: how far it is from where it was [m], with velocity and acceleration, shape (3,) each.
             share: of each hand.
         """
-        target, (off, velocity, acceleration) = self.standing.target, self.moved(time)
+        target, (off, velocity, acceleration) = self.stance.target, self.moved(time)
         coordinates, hand_wrenches = target.coordinates.copy(), target.hand_wrenches.copy()
         coordinates[:3] += off
         if share is not None:
@@ -181,7 +181,7 @@ class Walker:
         share = float(np.clip((pressure - first) @ between / (between @ between), 0.0, 1.0))
         shares = np.array([1.0 - share, share])
         shares[list(swinging)] = 0.0
-        return np.asarray(2.0 * shares[:, None] * self.standing.target.feet_wrenches)
+        return np.asarray(2.0 * shares[:, None] * self.stance.target.feet_wrenches)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -213,7 +213,7 @@ class Walk:
     @property
     def reason(self) -> str:
         """Why somebody cannot walk; empty where all can."""
-        return next((each.standing.reason for each in self.walkers.values() if each.standing.reason), "")
+        return next((each.stance.reason for each in self.walkers.values() if each.stance.reason), "")
 
     def load(self, time: float) -> tuple[Array, Array, Array]:
         """How far the load is from where it was [m], with velocity and acceleration, shape (3,) each."""
@@ -249,7 +249,7 @@ def walk_of(
     walkers = {}
     for body in bodies:
         name = body.agent.name
-        own = standing(body, holds[name], limits[name], gait.length * way.along)
+        own = ready_stance(body, holds[name], limits[name], gait.length * way.along)
         walkers[name] = Walker.of(body, own, gait, way, passing=passing)
     return Walk(way, walkers, gait, share)
 

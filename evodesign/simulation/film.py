@@ -25,6 +25,15 @@ EVERY = 2
 ARROW = 1e-3
 """Length of an arrow per force [m/N]."""
 
+BONE = 0.02
+"""Radius of what is drawn for links that are meshes, from joint to joint [m]."""
+
+SEEN = 2
+"""Groups of shapes that MuJoCo draws, at most."""
+
+RED, GREY = (0.85, 0.1, 0.1, 1.0), (0.45, 0.5, 0.6, 1.0)
+_ARROW, _CAPSULE = mujoco.mjtGeom.mjGEOM_ARROW, mujoco.mjtGeom.mjGEOM_CAPSULE
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Filmed:
@@ -103,6 +112,7 @@ def _pictures(shown: Filmed) -> Iterator[Image.Image]:
     except (ImportError, AttributeError, RuntimeError, Warning, mujoco.FatalError) as error:  # of OpenGL
         wanted = "a machine on which MuJoCo draws (MUJOCO_GL=egl or osmesa without a screen)"
         raise InputError("--video", "", wanted, f"{error}") from error
+    unseen = _unseen(shown.model)
     with renderer:
         for number in range(0, len(shown.states), EVERY):
             data.qpos = shown.states[number]
@@ -110,15 +120,25 @@ def _pictures(shown: Filmed) -> Iterator[Image.Image]:
             if shown.followed is not None:
                 camera.lookat[:2] = data.xpos[shown.followed][:2]
             renderer.update_scene(data, camera)
+            for link in unseen:
+                parent = shown.model.body_parentid[link]
+                _draw(renderer.scene, _CAPSULE, BONE, GREY, data.xpos[parent], data.xpos[link])
             if number < len(shown.forces) and shown.forces[number].any():
-                _draw_arrow(renderer.scene, data.xipos[shown.body], shown.forces[number])
+                end = data.xipos[shown.body]
+                _draw(renderer.scene, _ARROW, 0.03, RED, end - ARROW * shown.forces[number], end)
             yield Image.fromarray(renderer.render()).quantize(64)
 
 
-def _draw_arrow(scene: Any, end: Array, force: Array) -> None:
-    """An arrow that ends where the force acts."""
-    geom = scene.geoms[scene.ngeom]
-    red = np.array([0.85, 0.1, 0.1, 1.0], np.float32)
-    mujoco.mjv_initGeom(geom, mujoco.mjtGeom.mjGEOM_ARROW, np.zeros(3), np.zeros(3), np.eye(3).ravel(), red)
-    mujoco.mjv_connector(geom, mujoco.mjtGeom.mjGEOM_ARROW, 0.03, end - ARROW * force, end)
+def _unseen(model: Any) -> list[int]:
+    """Bodies on links of which nothing is drawn, since their shapes are meshes."""
+    seen = {int(model.geom_bodyid[geom]) for geom in range(model.ngeom) if model.geom_group[geom] <= SEEN}
+    parents = enumerate(model.body_parentid.tolist())
+    return [link for link, parent in parents if parent and parent not in seen]
+
+
+def _draw(scene: Any, kind: Any, width: float, colour: tuple[float, ...], start: Array, end: Array) -> None:
+    """A shape from one point to another."""
+    geom, still = scene.geoms[scene.ngeom], (np.zeros(3), np.zeros(3), np.eye(3).ravel())
+    mujoco.mjv_initGeom(geom, kind, *still, np.array(colour, np.float32))
+    mujoco.mjv_connector(geom, kind, width, start, end)
     scene.ngeom += 1

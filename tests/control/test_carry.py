@@ -12,7 +12,7 @@ import pytest
 from evodesign.control.controller import Command, WholeBodyController
 from evodesign.control.limits import JointLimits
 from evodesign.control.moving_body import MovingBody
-from evodesign.control.stance import standing
+from evodesign.control.stance import ready_stance
 from evodesign.control.target import Target, target_of
 from evodesign.errors import InputError
 from evodesign.evaluation.carries import CarriedCase, carried_holds
@@ -120,7 +120,7 @@ def test_who_stands_ready_has_feet_under_the_hips_and_is_in_balance(held: Held) 
         body = MovingBody(agent, held.trees[agent.name])
         hold = target_of(body, held.solution.postures[agent.name])
         limits = JointLimits.of(agent, held.trees[agent.name])
-        found = standing(body, hold, limits, np.array([0.12, 0.0]))
+        found = ready_stance(body, hold, limits, np.array([0.12, 0.0]))
         assert found.reason == ""
         motion = body.at(found.target.coordinates, found.target.velocity)
         for foot, leg in zip(motion.feet, body.legs(found.target.coordinates), strict=True):
