@@ -57,6 +57,8 @@ def test_a_walk_is_filmed_or_a_sentence_says_that_mujoco_cannot_draw(tmp_path: P
         (("--load", "-1"), "--load: wanted a positive number"),
         (("--height", "0.7"), "--height"),
         (("--damping", "0"), "damping"),
+        (("--frequency", "0"), "frequency"),
+        (("--payload", "no load"), "--payload"),
     ],
 )
 def test_what_there_is_not_is_refused(options: tuple[str, ...], words: str) -> None:
