@@ -57,7 +57,7 @@ def carry(
     json: Json = False,
     damaged: Damaged = False,
 ) -> None:
-    """Let a design's robot and person walk with the load, under whole-body controllers in MuJoCo."""
+    """Let a design's robot and person walk with the load in MuJoCo, under whole-body controllers."""
     refuse_without_a_controller()
     draw_without_a_screen()
     from evodesign.cli.output import console, print_json, show_notes, write_bytes

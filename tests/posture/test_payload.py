@@ -93,7 +93,10 @@ def test_inertia_is_that_of_a_uniform_box_of_its_mass() -> None:
     [
         ("center_of_mass_m = [0.3, 0.0, 0.0]", r"center_of_mass_m\[0\]: wanted a point in the box"),
         ('grasp = "glue"', "payload.grasp"),
-        ("robot_grasps_m = { left = [0.0, 0.1, 0.0] }", "robot_grasps_m.right: wanted this key"),
+        (
+            "robot_grasps_m = { left = [0.0, 0.1, 0.0] }",
+            "robot_grasps_m: wanted a point for each hand: left, right, found left",
+        ),
     ],
 )
 def test_impossible_loads_are_refused(line: str, words: str, problem: DesignProblem) -> None:
