@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -21,6 +20,7 @@ from evodesign.cli.options import (
     Payload,
     Person,
     RunPath,
+    Video,
 )
 from evodesign.simulation.installed import draw_without_a_screen, refuse_without_a_controller
 
@@ -50,9 +50,7 @@ def carry(
     ] = None,
     frequency: Frequency = 8.0,
     damping: Damping = 1.0,
-    video: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write a film (GIF), drawn by MuJoCo.")
-    ] = None,
+    video: Video = None,
     jobs: Jobs = CORES,
     json: Json = False,
     damaged: Damaged = False,

@@ -87,6 +87,9 @@ Frequency = Annotated[
     typer.Option("--frequency", metavar="RAD_S", help="Natural frequency of the feedback [rad/s]."),
 ]
 Damping = Annotated[float, typer.Option("--damping", metavar="RATIO", help="Its damping ratio.")]
+Video = Annotated[
+    Path | None, typer.Option("--video", metavar="FILE", help="Write a film (GIF), drawn by MuJoCo.")
+]
 Evaluations = Annotated[
     int | None,
     typer.Option(min=1, metavar="N", help="Total evaluations of the run.", show_default="as in the problem"),

@@ -24,6 +24,7 @@ from evodesign.cli.options import (
     Person,
     ProfileName,
     RunPath,
+    Video,
 )
 from evodesign.errors import InputError
 from evodesign.simulation.installed import EngineName, draw_without_a_screen, refuse_without_mujoco
@@ -65,9 +66,7 @@ def simulate(
     mcap: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write a recording for Foxglove and Lichtblick.")
     ] = None,
-    video: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write a film (GIF), drawn by MuJoCo.")
-    ] = None,
+    video: Video = None,
     jobs: Jobs = CORES,
     json: Json = False,
     damaged: Damaged = False,

@@ -10,10 +10,10 @@ from typing import Any
 import pytest
 from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from mcap.reader import make_reader
-from PIL import Image
 
 from evodesign.cli.main import app
 from evodesign.errors import InputError
+from tests.cli.films import assert_filmed_or_refused
 
 RUN = str(Path(__file__).parents[1] / "golden" / "lifting" / "format-2")
 SHORT = ("--height", "0.8", "--person", "tall", "--seconds", "0.3")
@@ -21,15 +21,6 @@ SHORT = ("--height", "0.8", "--person", "tall", "--seconds", "0.3")
 
 def simulated(*options: str) -> None:
     app(["simulate", RUN, "1", *options], standalone_mode=False)
-
-
-def refusal(*options: str) -> str:
-    """The sentence with which a simulation is refused; empty where it is not."""
-    try:
-        simulated(*options)
-    except InputError as error:
-        return str(error)
-    return ""
 
 
 @pytest.mark.slow
@@ -60,12 +51,7 @@ def test_a_hold_is_told_in_si_units_and_recorded_with_its_own_times(
 def test_a_film_is_drawn_or_a_sentence_says_that_mujoco_cannot_draw(tmp_path: Path) -> None:
     """Which of both it is, the machine decides."""
     film = tmp_path / "hold.gif"
-    refused = refusal(*SHORT, "--video", str(film))
-    if film.exists():
-        with Image.open(film) as opened:
-            assert (opened.size, refused) == ((480, 360), "")
-    else:
-        assert "MUJOCO_GL" in refused
+    assert_filmed_or_refused(lambda: simulated(*SHORT, "--video", str(film)), film)
 
 
 @pytest.mark.parametrize(
