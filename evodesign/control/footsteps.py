@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.mechanics.balance import GRAVITY
+from evodesign.tasks.lift import minimum_jerk
 
 Array = NDArray[np.float64]
 
@@ -77,10 +78,10 @@ def progress(distance: float, length: float, *, passing: bool) -> list[float]:
 
 
 def smooth(share: float) -> tuple[float, float, float]:
-    """From 0 to 1 by a quintic at rest at both ends: the number and its derivatives by the share of time."""
+    """From 0 to 1 with least jerk: the number and its derivatives by the share of time."""
     s = min(max(share, 0.0), 1.0)
     return (
-        s**3 * (10.0 - 15.0 * s + 6.0 * s**2),
+        minimum_jerk(s),
         30.0 * s**2 * (1.0 - s) ** 2,
         60.0 * s * (1.0 - s) * (1.0 - 2.0 * s),
     )
