@@ -90,7 +90,7 @@ def smooth(share: float) -> tuple[float, float, float]:
 def swing(start: Array, end: Array, gait: Gait, time: float) -> tuple[Array, Array, Array]:
     """Place, velocity and acceleration of a swing foot, shape (3,) each.
 
-    Along the way by a quintic in the middle of the swing's time, upwards by 16 lift s^2 (1 - s)^2.
+    Along the way with least jerk in the middle of the swing's time, upwards by 16 lift s^2 (1 - s)^2.
 
     Args:
         start: where it stood [m], shape (3,).
