@@ -4,7 +4,7 @@ A link with walls whose main solid is a cylinder or a box along the link is a be
 others, and what lies beside the main solid, are rigid. What a section transmits are force and moment of all
 that acts beyond it: on the links further from the root, or in the root link on those above.
 
-    safety factor    of both ends of every beam, under the weights and wrenches of the posture
+    safety factor    of both ends of every beam, under the weights and wrenches of a posture
     deflection       of the hands, downwards on average, under the load alone: virtual work of the load's
                      wrenches with half a unit force on each hand, both carried by the two feet alike, over
                      all beams (bending, twist) and all actuators (windup)
@@ -27,13 +27,14 @@ from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Solid
 from evodesign.hardware.structure import (
     STRENGTHS,
+    Failure,
     MaterialStrength,
     RectangularTube,
     RoundTube,
     Section,
     SectionLoad,
     bending_work,
-    safety_factor,
+    safety_factors,
     torsion_work,
 )
 from evodesign.mechanics.balance import GRAVITY
@@ -173,10 +174,18 @@ def _origin(places: Mapping[str, Placement], link: str) -> Array:
     return np.array(places[link].translation, float)
 
 
-def safety_factors(
+@dataclass(frozen=True, slots=True, order=True)
+class Safety:
+    """By how much what a beam transmits may grow, and how it gives way then."""
+
+    factor: float
+    failure: Failure
+
+
+def link_safety(
     tree: Tree, base: Placement, joints: Mapping[str, float], wrenches: Sequence[Wrench]
-) -> dict[str, float]:
-    """The lesser safety factor of both ends of each of a tree's beams in a posture, by link.
+) -> dict[str, Safety]:
+    """The lesser safety of both ends of each of a tree's beams in a posture, by link.
 
     Args:
         tree: of numbers.
@@ -186,7 +195,7 @@ def safety_factors(
     """
     places = link_frames(tree, base, joints)
     transmitted = _Transmitted(tree, places, [*wrenches, *_weights(tree, places)])
-    factors: dict[str, float] = {}
+    found: dict[str, Safety] = {}
     for beam in beams_of(tree, places):
         for end in beam.ends:
             force, moment = transmitted.beyond(beam, end)
@@ -194,9 +203,10 @@ def safety_factors(
             load = SectionLoad(
                 float(force @ along), (float(moment @ first), float(moment @ second)), float(moment @ along)
             )
-            found = float(safety_factor(beam.section, load, beam.length, beam.material))
-            factors[beam.link] = min(found, factors.get(beam.link, np.inf))
-    return factors
+            for failure, factor in safety_factors(beam.section, load, beam.length, beam.material).items():
+                safety = Safety(float(factor), failure)
+                found[beam.link] = min(safety, found.get(beam.link, safety))
+    return found
 
 
 def _weights(tree: Tree, places: Mapping[str, Placement]) -> Iterator[Wrench]:
@@ -207,14 +217,32 @@ def _weights(tree: Tree, places: Mapping[str, Placement]) -> Iterator[Wrench]:
         yield link.name, force, _cross(centre, force)
 
 
+@dataclass(frozen=True, slots=True)
+class Shares:
+    """A deflection as the sum of its causes.
+
+    Args:
+        links: what the bending and twist of each beam add [m], by link.
+        windup: what the gear of each actuator adds [m], by joint.
+    """
+
+    links: Mapping[str, float]
+    windup: Mapping[str, float]
+
+    @property
+    def total(self) -> float:
+        """The deflection [m]."""
+        return sum(self.links.values()) + sum(self.windup.values())
+
+
 def hand_deflection(
     tree: Tree,
     base: Placement,
     joints: Mapping[str, float],
     hands: Mapping[str, Array],
     soles: Sequence[str],
-) -> float:
-    """How far the hands give way downwards under the load [m], the mean of both.
+) -> Shares:
+    """How far beams and actuators let the hands give way downwards under the load, the mean of both hands.
 
     Args:
         tree: of numbers.
@@ -226,30 +254,51 @@ def hand_deflection(
     places = link_frames(tree, base, joints)
     load = [(frame, wrench[:3], wrench[3:]) for frame, wrench in hands.items()]
     unit = [(frame, np.array([0.0, 0.0, -1.0 / len(hands)]), np.zeros(3)) for frame in hands]
+    return virtual_work(tree, places, load, unit, soles)
+
+
+def virtual_work(
+    tree: Tree,
+    places: Mapping[str, Placement],
+    load: Sequence[Wrench],
+    unit: Sequence[Wrench],
+    soles: Sequence[str],
+) -> Shares:
+    """How far a load moves along a unit load.
+
+    Args:
+        tree: of numbers.
+        places: of its links.
+        load: wrenches on frames.
+        unit: wrenches of a force of 1.
+        soles: frames under the feet, which carry both in equal parts.
+    """
     real, virtual = (
-        _Transmitted(tree, places, [*wrenches, *_carried(places, wrenches, soles)])
+        _Transmitted(tree, places, [*wrenches, *carried(places, wrenches, soles)])
         for wrenches in (load, unit)
     )
-    found = 0.0
+    links: dict[str, float] = {}
     for beam in beams_of(tree, places):
         along, *across = beam.axes
         ends = [(real.beyond(beam, end)[1], virtual.beyond(beam, end)[1]) for end in beam.ends]
         for axis, moment in zip(across, beam.section.second_moments, strict=True):
             (big, small), (big_end, small_end) = ((float(m @ axis), float(v @ axis)) for m, v in ends)
             stiffness = beam.material.young * float(moment)
-            found += bending_work(beam.length, stiffness, (big, big_end), (small, small_end))
+            bent = bending_work(beam.length, stiffness, (big, big_end), (small, small_end))
+            links[beam.link] = links.get(beam.link, 0.0) + bent
         twist, unit_twist = (float(each @ along) for each in ends[0])
         stiffness = beam.material.shear * float(beam.section.torsion_constant)
-        found += torsion_work(beam.length, stiffness, twist, unit_twist)
+        links[beam.link] += torsion_work(beam.length, stiffness, twist, unit_twist)
+    windup = {}
     for name, actuator in actuators_of(tree).items():
         joint = tree.joint_by_name[name]
         axis = np.array(places[joint.child].rotation, float) @ np.array(joint.axis)
         torques = (each.torque(joint.child, axis) for each in (real, virtual))
-        found += float(np.prod([*torques])) / float(actuator.stiffness)
-    return found
+        windup[name] = float(np.prod([*torques])) / float(actuator.stiffness)
+    return Shares(links, windup)
 
 
-def _carried(
+def carried(
     places: Mapping[str, Placement], wrenches: Sequence[Wrench], soles: Sequence[str]
 ) -> Iterator[Wrench]:
     """What the feet answer to wrenches on hands, in equal parts."""

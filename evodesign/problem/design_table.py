@@ -244,11 +244,13 @@ class HardwareTable(Table, frozen=True):
 
     Attributes:
         non_structural_share: share of a hollow link's mass in the file that stays besides its wall.
+        least_wall_m: least wall that can be made; without it, that of the material. Since 0.3.
         gear_friction: whether friction in the gears of `[[design.actuator]]` counts: it helps motors to hold,
             and they work against it in a lift. Since 0.3.
     """
 
     non_structural_share: Share = 0.3
+    least_wall_m: Positive | None = None
     gear_friction: bool = False
 
 

@@ -120,9 +120,13 @@ TORQUE_SHARE = over_agents(designed, largest, "1", torque_share)
 
 def hand_deflection(robot: Agent, posture: AgentPosture) -> float:
     """How far a robot's hands give way downwards under the load, the mean of both [mm]."""
+    return 1000.0 * deflection_shares(robot, posture).total
+
+
+def deflection_shares(robot: Agent, posture: AgentPosture) -> link_beams.Shares:
+    """What each link and each joint with an actuator adds to it."""
     hands = {hand.frame: posture.wrenches[hand.name] for hand in robot.hands}
-    soles = robot.foot_frames
-    return 1000.0 * link_beams.hand_deflection(robot.tree, _base(posture), posture.joints, hands, soles)
+    return link_beams.hand_deflection(robot.tree, _base(posture), posture.joints, hands, robot.foot_frames)
 
 
 HAND_DEFLECTION = over_agents(designed, largest, "mm", hand_deflection)
@@ -130,14 +134,14 @@ HAND_DEFLECTION = over_agents(designed, largest, "mm", hand_deflection)
 
 def least_safety_factor(robot: Agent, posture: AgentPosture) -> float:
     """The least safety factor of a robot's links with walls; infinite without any."""
-    return min(link_safety(robot, posture).values(), default=np.inf)
+    return min((each.factor for each in link_safety(robot, posture).values()), default=np.inf)
 
 
 SAFETY_FACTOR = over_agents(designed, least, "1", least_safety_factor)
 
 
-def link_safety(robot: Agent, posture: AgentPosture) -> dict[str, float]:
-    """The safety factor of each of a robot's links that is a beam, by name; its tree is the design's."""
+def link_safety(robot: Agent, posture: AgentPosture) -> dict[str, link_beams.Safety]:
+    """The safety of each of a robot's links that is a beam, by name; its tree is the design's."""
     base = _base(posture)
     places = link_frames(robot.tree, base, posture.joints)
     held = [(hand.frame, posture.wrenches[hand.name]) for hand in robot.hands]
@@ -145,7 +149,7 @@ def link_safety(robot: Agent, posture: AgentPosture) -> dict[str, float]:
     for foot in robot.feet:
         turn, wrench = np.array(places[foot.frame].rotation, float), posture.wrenches[foot.name]
         wrenches.append((foot.frame, turn @ wrench[:3], turn @ wrench[3:]))
-    return link_beams.safety_factors(robot.tree, base, posture.joints, wrenches)
+    return link_beams.link_safety(robot.tree, base, posture.joints, wrenches)
 
 
 def _base(posture: AgentPosture) -> Placement:

@@ -183,9 +183,13 @@ def torque_margin(result: DesignResult) -> float | None:
 
 
 def safety_of_links(result: DesignResult) -> float | None:
-    """The least safety factor of the robot's links, over all cases; None without walls."""
+    """The least safety factor of the robot's links, over all cases and load cases; None without walls."""
     factors = values_over_instants(SAFETY_FACTOR.value, result)
-    least = math.inf if factors is None else min(each for values in factors for each in values)
+    if factors is None:
+        return None
+    alone = () if result.standing is None else result.standing.safety(result.tree)
+    standing = [each.factor for _, links in alone for each in links.values()]
+    least = min([each for values in factors for each in values] + standing, default=math.inf)
     return least if least < math.inf else None
 
 

@@ -223,6 +223,14 @@ def test_designs_name_torques_walls_and_models() -> None:
         (WALL + "thickness_m = 0.3\n" + IN_ALUMINIUM, ["wall of link l_arm", "less than half"]),
         (WALL + "thickness_m = -0.1\n" + IN_ALUMINIUM, ["thickness_m", "a positive number"]),
         (WALL + "thickness_m = [0.2, 0.1]\n" + IN_ALUMINIUM, ["a rising pair"]),
+        (
+            WALL + "thickness_m = [0.0005, 0.002]\n" + IN_ALUMINIUM,
+            ["design.wall[0].thickness_m", "at least 0.001 m", "aluminium_6061", "sinbo", "0.0005 m"],
+        ),
+        (
+            WALL + "thickness_m = 0.002\n" + IN_ALUMINIUM + "\n[hardware]\nleast_wall_m = 0.003\n",
+            ["design.wall[0].thickness_m", "at least 0.003 m, hardware.least_wall_m", "0.002 m"],
+        ),
         (WALL + THIN, ["design.wall[0].material", "or a [[design.density]] of 'l_arm'"]),
         (WALL + THIN + 'material = "aluminum_6061"\n', ["did you mean 'aluminium_6061'?"]),
         (
