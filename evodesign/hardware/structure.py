@@ -26,6 +26,7 @@ from enum import StrEnum
 from typing import Final
 
 from evodesign.body.placement import Scalar
+from evodesign.hardware.fatigue import ALUMINIUM_6061_T6, FatigueLine
 
 WALL_BUCKLING = 0.605
 """Critical stress of a perfect tube's wall in units of E t/R."""
@@ -48,6 +49,7 @@ class MaterialStrength:
         source: where the figures stand.
         least_wall: least wall that can be made of it [m]; zero where no source gives one.
         wall_source: where that stands.
+        fatigue: what it bears how often; None where no source says.
     """
 
     young: float
@@ -56,6 +58,7 @@ class MaterialStrength:
     source: str
     least_wall: float = 0.0
     wall_source: str = ""
+    fatigue: FatigueLine | None = None
 
     @property
     def shear(self) -> float:
@@ -72,7 +75,7 @@ _WALLS = "machined, recommended: sinbo-machining.com/wiki/dfm/wall-thickness.php
 STRENGTHS: Final[Mapping[str, MaterialStrength]] = {
     "nylon_66": MaterialStrength(1.6e9, 45e6, 0.39, f"{_TABLE}: dry, the low ends", 0.0008, _WALLS),
     "carbon_fibre_epoxy": MaterialStrength(55e9, 400e6, 0.3, "quasi-isotropic tube, low end of makers' data"),
-    "aluminium_6061": MaterialStrength(69e9, 276e6, 0.33, f"{_TABLE}: T6", 0.001, _WALLS),
+    "aluminium_6061": MaterialStrength(69e9, 276e6, 0.33, f"{_TABLE}: T6", 0.001, _WALLS, ALUMINIUM_6061_T6),
     "aluminium_7075": MaterialStrength(71e9, 503e6, 0.33, f"{_TABLE}: T6", 0.001, _WALLS),
     "titanium_6al_4v": MaterialStrength(114e9, 830e6, 0.34, f"{_TABLE}: annealed", 0.0015, _WALLS),
     "steel_4340": MaterialStrength(207e9, 472e6, 0.30, f"{_TABLE}: annealed", 0.0015, _WALLS),

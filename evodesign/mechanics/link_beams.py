@@ -193,23 +193,30 @@ def link_safety(
         joints: positions [rad] by name.
         wrenches: on hands and feet; weights are added.
     """
-    places = link_frames(tree, base, joints)
-    transmitted = _Transmitted(tree, places, [*wrenches, *_weights(tree, places)])
     found: dict[str, Safety] = {}
-    for beam in beams_of(tree, places):
-        for end in beam.ends:
-            force, moment = transmitted.beyond(beam, end)
-            along, first, second = beam.axes
-            load = SectionLoad(
-                float(force @ along), (float(moment @ first), float(moment @ second)), float(moment @ along)
-            )
-            for failure, factor in safety_factors(beam.section, load, beam.length, beam.material).items():
-                safety = Safety(float(factor), failure)
-                found[beam.link] = min(safety, found.get(beam.link, safety))
+    for beam, load in loaded_ends(tree, base, joints, wrenches):
+        for failure, factor in safety_factors(beam.section, load, beam.length, beam.material).items():
+            safety = Safety(float(factor), failure)
+            found[beam.link] = min(safety, found.get(beam.link, safety))
     return found
 
 
-def _weights(tree: Tree, places: Mapping[str, Placement]) -> Iterator[Wrench]:
+def loaded_ends(
+    tree: Tree, base: Placement, joints: Mapping[str, float], wrenches: Sequence[Wrench]
+) -> Iterator[tuple[Beam, SectionLoad]]:
+    """What both ends of each of a tree's beams transmit in a posture; arguments as in `link_safety`."""
+    places = link_frames(tree, base, joints)
+    transmitted = _Transmitted(tree, places, [*wrenches, *weights(tree, places)])
+    for beam in beams_of(tree, places):
+        along, first, second = beam.axes
+        for end in beam.ends:
+            force, moment = transmitted.beyond(beam, end)
+            bending = float(moment @ first), float(moment @ second)
+            yield beam, SectionLoad(float(force @ along), bending, float(moment @ along))
+
+
+def weights(tree: Tree, places: Mapping[str, Placement]) -> Iterator[Wrench]:
+    """Of all links."""
     for link in tree.links:
         inertia = link.inertia
         force = np.array([0.0, 0.0, -GRAVITY * float(inertia.mass)])

@@ -1,11 +1,26 @@
-"""Hollow links of a robot that stands alone: how near they are to giving way in a load case."""
+"""Hollow links of a robot that stands alone: how near they are to giving way in a load case, and in a fall.
+
+What falls (a payload into the hands, or the robot onto its feet) gives its energy to beams and gears, which
+are linear springs without mass. With d the deflection under its weight W at rest, h the height of the fall,
+and M the moments of the weight, carried by the feet alike,
+
+    n = 1 + sqrt(1 + 2 h / d),      d = 1/W integral of M^2 / (E I) + ...    (virtual work of W along W / W)
+
+and all that the weight asks at rest is asked n times at the lowest point. It is an upper bound: the mass of
+what is struck, gears that turn back, soles and covers all soften the blow.
+
+Source: Young and Budynas, Roark's Formulas for Stress and Strain, on impact and sudden loading.
+"""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 
 from evodesign.body.placement import Placement, transpose
-from evodesign.mechanics.link_beams import Safety, Wrench, link_safety
+from evodesign.errors import ModelError
+from evodesign.mechanics.link_beams import Safety, Wrench, carried, link_safety, virtual_work, weights
 from evodesign.mechanics.stance_case import StanceCase, StanceTorques
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
@@ -19,7 +34,35 @@ def stance_safety(tree: Tree, case: StanceCase, found: StanceTorques) -> dict[st
         case: posture and loads; its factor is of actuators alone.
         found: what became of it; nothing is safe or not where the robot cannot stand.
     """
-    return {} if found.reason else link_safety(tree, *standing(tree, case, found))
+    if found.reason:
+        return {}
+    base, joints, wrenches = standing(tree, case, found)
+    if case.dropped:
+        times, falling = impact(tree, case, found)
+        wrenches += [
+            (frame, (times - 1.0) * force, (times - 1.0) * moment) for frame, force, moment in falling
+        ]
+    return link_safety(tree, base, joints, wrenches)
+
+
+def impact(tree: Tree, case: StanceCase, found: StanceTorques) -> tuple[float, list[Wrench]]:
+    """How many times its weight what falls asks for, and that weight with what the feet answer.
+
+    Raises:
+        ModelError: nothing gives way, so that the blow would have no end.
+    """
+    base, joints, _ = standing(tree, case, found)
+    places = link_frames(tree, base, joints)
+    load = [(frame, np.array(force), np.zeros(3)) for frame, force in case.loads]
+    load = load or list(weights(tree, places))
+    whole = -sum(float(force[2]) for _, force, _ in load)
+    unit = [(frame, force / whole, moment / whole) for frame, force, moment in load]
+    deflection = virtual_work(tree, places, load, unit, case.soles).total
+    if deflection <= 0.0:
+        wanted = "links with walls or actuators that give way under what falls"
+        raise ModelError(tree.name, f"load case '{case.name}'", wanted, "none")
+    times = 1.0 + math.sqrt(1.0 + 2.0 * case.dropped / deflection)
+    return times, [*load, *carried(places, load, case.soles)]
 
 
 def standing(

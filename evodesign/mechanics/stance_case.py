@@ -75,6 +75,7 @@ class StanceCase:
         loads: force [N] on frames of the robot, ahead, to the left and upwards.
         friction: largest horizontal force of a foot, as a share of its vertical one.
         raised: a hand at a height; None: where the joints put it.
+        dropped: height [m] from which the loads fall, or without any the robot.
     """
 
     name: str
@@ -85,6 +86,7 @@ class StanceCase:
     loads: tuple[tuple[str, Vector], ...] = ()
     friction: float = math.inf
     raised: RaisedHand | None = None
+    dropped: float = 0.0
 
     @property
     def groups(self) -> tuple[tuple[str, ...], ...]:

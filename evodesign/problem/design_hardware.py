@@ -226,7 +226,9 @@ def walls_of(tables: ProblemFile, source: ProblemSource, tree: Tree) -> tuple[Wa
             wall that cannot be made.
     """
     known, names, seen = known_materials(tables, source), set[str](), dict[str, str]()
-    walls = []
+    walls, duty = [], tables.duty
+    life = None if duty is None else duty.life_shifts
+    cycles = duty.lifts_per_hour * duty.shift_h * life if duty and life else None
     for position, table in enumerate(tables.design.wall):
         key = f"design.wall[{position}]"
         if table.name in names:
@@ -249,6 +251,7 @@ def walls_of(tables: ProblemFile, source: ProblemSource, tree: Tree) -> tuple[Wa
                 density=None if material is None else material.density,
                 share=tables.hardware.non_structural_share,
                 least=least,
+                cycles=cycles,
             )
         )
     return tuple(walls)

@@ -47,6 +47,7 @@ from evodesign.quantities.design_result import (
     values_over_instants,
 )
 from evodesign.quantities.hardware_quantities import (
+    FATIGUE,
     HAND_DEFLECTION,
     HOLDING_POWER,
     SAFETY_FACTOR,
@@ -55,6 +56,7 @@ from evodesign.quantities.hardware_quantities import (
     WINDING_TEMPERATURE,
     actuator_mass,
     cost,
+    fatigue_factor,
 )
 from evodesign.quantities.motion_quantities import (
     ENDURANCE,
@@ -193,6 +195,14 @@ def safety_of_links(result: DesignResult) -> float | None:
     return least if least < math.inf else None
 
 
+def fatigue_of_links(result: DesignResult) -> float | None:
+    """The least fatigue safety factor of the robot's links, over all cases; None without walls or a life."""
+    cycles = [wall.cycles for wall in result.space.walls if wall.cycles is not None]
+    factors = values_over_instants(fatigue_factor(cycles[0]).value, result) if cycles else None
+    least = math.inf if factors is None else min(each for values in factors for each in values)
+    return least if least < math.inf else None
+
+
 def energy(result: DesignResult) -> float | None:
     """What the robot's joints and actuators draw in a lift [J], the mean over all lifts; None without any."""
     found = values_over_instants(ROBOT_POWER.value, result)
@@ -305,6 +315,7 @@ NEED_ROBOTS = frozenset(
     {
         *("robot_torque", "peak_torque", "holding_power", "hand_deflection", WINDING, POWER, ENERGY),
         *("mass", "com_height", "actuator_mass", "cost", "torque_margin", "least_safety_factor"),
+        FATIGUE,
         *(BODIES_APART, PARTS_APART, *PAPER_COSTS),
         *SIMULATED,
     }
@@ -342,6 +353,7 @@ WHOLE: Mapping[str, ObjectiveKind] = {
     ENDURANCE: ObjectiveKind("s", endurance_seconds),
     "torque_margin": ObjectiveKind("1", torque_margin),
     "least_safety_factor": ObjectiveKind("1", safety_of_links),
+    FATIGUE: ObjectiveKind("1", fatigue_of_links),
     "com_height": ObjectiveKind("m", com_height),
     ENERGY: ObjectiveKind("J", energy),
     LEAST_TIME: ObjectiveKind("s", mean_least_time),

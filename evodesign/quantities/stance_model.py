@@ -9,7 +9,7 @@ import numpy as np
 from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.floating_base import FloatingBody
 from evodesign.mechanics.link_beams import Safety
-from evodesign.mechanics.stance_beams import stance_safety
+from evodesign.mechanics.stance_beams import impact, stance_safety
 from evodesign.mechanics.stance_case import StanceCase, StanceTorques, stance_torques
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.model import Tree
@@ -60,9 +60,11 @@ class StanceModel:
         ]
 
     def safety(self, tree: Tree) -> Iterator[tuple[str, dict[str, Safety]]]:
-        """Name and safety of each link that is a beam, by link, of each case."""
+        """What each case is called, and the safety of each link that is a beam, by link."""
         for case, found in self.torques(tree):
-            yield case.name, stance_safety(tree, case, found)
+            falls = case.dropped and not found.reason
+            times = f", {impact(tree, case, found)[0]:.3g} times its load" if falls else ""
+            yield f"{case.name}{times}", stance_safety(tree, case, found)
 
     def shares(self, tree: Tree) -> list[float] | None:
         """The largest of these over peak torque, of each case; None where the robot cannot stand."""
