@@ -1,8 +1,7 @@
 """Hollow links as beams: how near they are to yielding in a posture, and how far the hands give way.
 
-A link with walls whose main solid is a cylinder or a box along the link is a beam from end to end of it;
-others, and what lies beside the main solid, are rigid. What a section transmits are force and moment of all
-that acts beyond it: on the links further from the root, or in the root link on those above.
+What a section transmits are force and moment of all that acts beyond it: on the links further from the root,
+or in the root link on those above.
 
     safety factor    of both ends of every beam, under the weights and wrenches of a posture
     deflection       of the hands, downwards on average, under the load alone: virtual work of the load's
@@ -22,110 +21,24 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from evodesign.body.material import CATALOGUE
 from evodesign.body.placement import Placement
-from evodesign.body.shape import Box, Cylinder, Solid
 from evodesign.hardware.structure import (
-    STRENGTHS,
     Failure,
-    MaterialStrength,
-    RectangularTube,
-    RoundTube,
-    Section,
     SectionLoad,
     bending_work,
     safety_factors,
     torsion_work,
 )
 from evodesign.mechanics.balance import GRAVITY
+from evodesign.mechanics.beams import Beam, beams_of
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 
 Array = NDArray[np.float64]
 
-ALONG = 0.7
-"""Cosine between a solid's axis and the direction of its link from which on the solid is a beam."""
-
-STRONG = {round(CATALOGUE[name].density, 6): strength for name, strength in STRENGTHS.items()}
-"""Stiffness and strength by density [kg/m^3]."""
-
 Wrench = tuple[str, Array, Array]
 """A link, a force [N] at its origin and a moment [N m], in the axes in which the tree stands."""
-
-
-@dataclass(frozen=True, slots=True)
-class Beam:
-    """A link as a beam, in the axes in which its tree stands.
-
-    Args:
-        link: its name.
-        ends: of the main solid [m]; the second is on the far side.
-        axes: along it, and the section's first and second axis; unit vectors.
-        section: all along it.
-        material: of its wall.
-    """
-
-    link: str
-    ends: tuple[Array, Array]
-    axes: tuple[Array, Array, Array]
-    section: Section
-    material: MaterialStrength
-
-    @property
-    def length(self) -> float:
-        """From end to end [m]."""
-        return float(np.linalg.norm(self.ends[1] - self.ends[0]))
-
-
-def beams_of(tree: Tree, places: Mapping[str, Placement]) -> list[Beam]:
-    """The links of a tree of numbers that are beams, where they are."""
-    found = []
-    for link in tree.links:
-        hollow = [solid for solid in link.solids if solid.wall is not None]
-        material = STRONG.get(round(float(hollow[0].density), 6)) if hollow else None
-        if not hollow or material is None:
-            continue
-        main = max(hollow, key=lambda solid: float(solid.shape.volume))
-        along = _section(main, _direction(tree, link.name))
-        if along is None:
-            continue
-        axis, section, length = along
-        turn = np.array(places[link.name].rotation, float) @ np.array(main.link_from_solid.rotation, float)
-        centre = np.array(places[link.name].apply(main.link_from_solid.translation), float)
-        others = [place for place in range(3) if place != abs(axis) - 1]
-        unit = np.sign(axis) * turn[:, abs(axis) - 1]
-        half = 0.5 * length * unit
-        axes = (unit, turn[:, others[0]], turn[:, others[1]])
-        found.append(Beam(link.name, (centre - half, centre + half), axes, section, material))
-    return found
-
-
-def _direction(tree: Tree, name: str) -> Array:
-    """From a link's parent joint to the middle of its child joints; upwards in the root."""
-    if name == tree.root:
-        return np.array([0.0, 0.0, 1.0])
-    children = [joint.parent_from_child.translation for joint in tree.child_joints[name]]
-    middle = np.mean(np.array(children, float), axis=0) if children else np.zeros(3)
-    size = float(np.linalg.norm(middle))
-    return middle / size if size > 1e-6 else middle
-
-
-def _section(solid: Solid, direction: Array) -> tuple[int, Section, float] | None:
-    """Which of its axes a solid's beam is along (1 to 3, negative for backwards), its section and length."""
-    in_solid = np.array(solid.link_from_solid.rotation, float).T @ direction
-    shape, wall = solid.shape, float(solid.wall or 0.0)
-    place = int(np.argmax(np.abs(in_solid))) if not isinstance(shape, Cylinder) else 2
-    if abs(in_solid[place]) < ALONG:
-        return None
-    axis = int(np.copysign(place + 1, in_solid[place]))
-    if isinstance(shape, Cylinder):
-        return axis, RoundTube(float(shape.radius), wall), float(shape.length)
-    if isinstance(shape, Box):
-        sides = [float(side) for side in shape.sides]
-        width, height = (side for number, side in enumerate(sides) if number != place)
-        return axis, RectangularTube(width, height, wall), sides[place]
-    return None
 
 
 class _Transmitted:
@@ -150,12 +63,8 @@ class _Transmitted:
 
     def beyond(self, beam: Beam, point: Array) -> tuple[Array, Array]:
         """Force, and moment about a point, of all beyond a beam."""
-        children = [joint.child for joint in self._tree.child_joints[beam.link]]
-        if beam.link == self._tree.root:
-            middle = (beam.ends[0] + beam.ends[1]) / 2.0
-            children = [c for c in children if (_origin(self._places, c) - middle) @ beam.axes[0] > 0.0]
-        force = sum((self._forces[child] for child in children), start=np.zeros(3))
-        moment = sum((self._moments[child] for child in children), start=np.zeros(3))
+        force = sum((self._forces[child] for child in beam.beyond), start=np.zeros(3))
+        moment = sum((self._moments[child] for child in beam.beyond), start=np.zeros(3))
         return force, moment - _cross(point, force)
 
     def torque(self, child: str, axis: Array) -> float:

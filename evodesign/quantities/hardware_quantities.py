@@ -16,6 +16,8 @@ masses and prices are those of one, powers are added up, and the rest is that of
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from evodesign.body.placement import Placement
@@ -24,8 +26,9 @@ from evodesign.hardware.heat import RATED_AIR
 from evodesign.hardware.structure import von_mises
 from evodesign.mechanics import link_beams
 from evodesign.mechanics.agent import Agent
-from evodesign.posture.results import AgentPosture
-from evodesign.quantities.design_result import CaseQuantity
+from evodesign.mechanics.robot_gradient import RobotGradient
+from evodesign.posture.results import AgentPosture, Array
+from evodesign.quantities.design_result import CaseQuantity, PostureSlopes
 from evodesign.quantities.over_agents import designed, largest, least, over_agents, total
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.frames import link_frames
@@ -135,7 +138,17 @@ def deflection_shares(robot: Agent, posture: AgentPosture) -> link_beams.Shares:
     return link_beams.hand_deflection(robot.tree, _base(posture), posture.joints, hands, robot.foot_frames)
 
 
-HAND_DEFLECTION = over_agents(designed, largest, "mm", hand_deflection)
+def deflection_slopes(
+    gradient: RobotGradient, values: Sequence[float], robot: Agent, posture: AgentPosture
+) -> tuple[Array, PostureSlopes]:
+    """Its derivatives by what programs are given, and by posture and wrenches of the load [mm/...]."""
+    angles, held = np.asarray(posture.base_angles), posture.wrenches
+    found = gradient.deflection(robot).at(robot.tree, values, angles, posture.joints, held)
+    by_posture = PostureSlopes(found.base_angles, found.joints, found.wrenches)
+    return 1000.0 * found.values, by_posture.times(1000.0)
+
+
+HAND_DEFLECTION = over_agents(designed, largest, "mm", hand_deflection, by_robot=deflection_slopes)
 
 
 def least_safety_factor(robot: Agent, posture: AgentPosture) -> float:

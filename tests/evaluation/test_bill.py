@@ -18,7 +18,7 @@ from evodesign.evaluation.evaluate import Evaluator, detail_of
 from evodesign.hardware.structure import STRENGTHS, Failure, wall_buckling_stress
 from evodesign.mechanics.agent import ROBOT, SIDES
 from evodesign.mechanics.balance import GRAVITY
-from evodesign.mechanics.link_beams import beams_of
+from evodesign.mechanics.beams import beams_of
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source
