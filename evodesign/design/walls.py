@@ -22,6 +22,8 @@ class Wall:
         material: name of what it is made of; None where a density parameter says so.
         density: of the material [kg/m^3]; None where the design chooses it.
         share: of a link's mass in the file that stays beside the wall.
+        least: least thickness that can be made [m]; zero where no source gives one.
+        cycles: how often a load comes and goes in the robot's life; None where nobody says.
     """
 
     group: str
@@ -30,6 +32,8 @@ class Wall:
     material: str | None
     density: float | None
     share: float
+    least: float = 0.0
+    cycles: float | None = None
 
 
 def walls_of_links(walls: Iterable[Wall], chosen: Mapping[str, Scalar]) -> dict[str, WallOfLink]:

@@ -5,31 +5,35 @@
                         "share": of rated or peak torque, "loss_w": largest copper loss of the lift,
                         "friction_torque_n_m": that turns it without current, or null}},
      "links": {link: {"material": name, "wall_m", "mass_kg": without actuators,
-                      "safety_factor": or null, "safety_case": case of the lift, or null}},
+                      "least_wall_m": that can be made, "safety_factor", "safety_mode", "safety_case",
+                      "deflection_share": of that of the hands in the case in which it is largest,
+                      these four null of a link that is no beam,
+                      "governed_by": the mode, "stiffness", "least wall", "problem file" or "design"}},
+     "governs": sentences on walls and on actuators,
      "mass_kg": {"actuators", "structure", "rest", "total"},
      "least_clearance": {"parts": two names, "clearance_m": negative where they do not go together}}
 
 What is asked by a load case is its factor times the torque, and its share that of peak torque; by a case of
 the lift, of rated torque. Structure is the walls' own mass. Least room is told where actuators are bodies
-(`collision.parts`). A problem without actuators and walls has none.
+(`collision.parts`). What governs is `evaluation.governs`. A problem without actuators and walls has none.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from evodesign.collision.parts import part_clearance
 from evodesign.design.space import DesignSpace
+from evodesign.evaluation.governs import governing, sentences
 from evodesign.evaluation.logged_posture import logged_posture
 from evodesign.hardware.actuators import Actuator
 from evodesign.mechanics.agent import ROBOT, Agent
-from evodesign.mechanics.stance_case import StanceCase
+from evodesign.mechanics.link_beams import Safety
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem
-from evodesign.quantities.hardware_quantities import link_safety
+from evodesign.quantities.hardware_quantities import deflection_shares, link_safety
 from evodesign.quantities.stance_model import StanceModel
 from evodesign.records import CaseDetail
 from evodesign.tree.equip import actuators_of
@@ -50,18 +54,27 @@ def bill_of_materials(problem: DesignProblem, tree: Tree, cases: Sequence[CaseDe
     space, actuators = problem.space, actuators_of(tree)
     if not actuators and not space.walls:
         return {}
-    asked = [*_lifted(cases), *_alone(problem.scene.robot, problem.stances, tree)]
+    robot = replace(problem.scene.robot, tree=tree)
+    alone = (
+        StanceModel.of(problem.stances, problem.scene.robot, tuple(actuators)) if problem.stances else None
+    )
+    asked = [*_lifted(cases), *(_alone(alone, tree) if alone else ())]
     groups = {joint: parameter.group for parameter in space.parameters for joint in parameter.joints}
     joints = {
         joint: {"actuator": groups[joint], **_row(joint, each, asked)} for joint, each in actuators.items()
     }
     links, structure = _links(space, tree)
-    for name, safety in _safety(problem.scene.robot, tree, cases if space.walls else ()).items():
-        links[name] |= safety
+    if links:
+        for name, safety in _safety(robot, alone, cases).items():
+            links[name] |= safety
+        deflections = _deflect(robot, cases, links)
+        for name, by in governing(problem, links, deflections).items():
+            links[name]["governed_by"] = by
     total = float(tree.mass)
     mass = float(sum(each.mass for each in actuators.values()))
     split = {"actuators": mass, "structure": structure, "rest": total - mass - structure, "total": total}
     bill: dict[str, Any] = {"joints": joints, "links": links, "mass_kg": split}
+    bill["governs"] = [*sentences(problem, bill)]
     if clearance := part_clearance(tree, problem.scene.designed_tree):
         least = clearance.least
         bill["least_clearance"] = {"parts": [least.first, least.second], "clearance_m": least.distance}
@@ -84,22 +97,36 @@ def _postures(cases: Sequence[CaseDetail]) -> Iterator[tuple[str, AgentPosture]]
                 yield f"{name}, {disturbance}", logged_posture(own, agents[ROBOT])
 
 
-def _safety(robot: Agent, tree: Tree, cases: Sequence[CaseDetail]) -> dict[str, dict[str, Any]]:
-    """The least safety factor of each link that is a beam, and the case of the lift that governs it."""
-    least: dict[str, tuple[float, str]] = {}
-    for name, posture in _postures(cases):
-        for link, factor in link_safety(replace(robot, tree=tree), posture).items():
-            least[link] = min((factor, name), least.get(link, (math.inf, "")))
+def _safety(
+    robot: Agent, alone: StanceModel | None, cases: Sequence[CaseDetail]
+) -> dict[str, dict[str, Any]]:
+    """The least safety factor of each link that is a beam, how it gives way, and in which case."""
+    found = [(name, link_safety(robot, posture)) for name, posture in _postures(cases)]
+    found += alone.safety(robot.tree) if alone else ()
+    least: dict[str, tuple[Safety, str]] = {}
+    for name, links in found:
+        for link, safety in links.items():
+            least[link] = min((safety, name), least.get(link, (safety, name)))
     return {
-        link: {"safety_factor": factor, "safety_case": name}
-        for link, (factor, name) in least.items()
-        if factor < math.inf
+        link: {"safety_factor": safety.factor, "safety_mode": safety.failure.value, "safety_case": name}
+        for link, (safety, name) in least.items()
     }
 
 
-def _alone(robot: Agent, stances: Sequence[StanceCase], tree: Tree) -> Iterator[Asked]:
-    model = StanceModel.of(tuple(stances), robot, tuple(actuators_of(tree)))
-    for case, found in model.torques(tree) if stances else ():
+def _deflect(
+    robot: Agent, cases: Sequence[CaseDetail], links: Mapping[str, dict[str, Any]]
+) -> dict[str, float]:
+    """The deflection of the hands in every case [mm]; links are told their share of the largest."""
+    found = {name: deflection_shares(robot, posture) for name, posture in _postures(cases)}
+    if found:
+        largest = max(found.values(), key=lambda each: each.total)
+        for link, part in largest.links.items():
+            links[link]["deflection_share"] = part / largest.total
+    return {name: 1e3 * each.total for name, each in found.items()}
+
+
+def _alone(model: StanceModel, tree: Tree) -> Iterator[Asked]:
+    for case, found in model.torques(tree):
         yield case.name, {joint: case.factor * torque for joint, torque in found.torques.items()}, True
 
 
@@ -139,8 +166,8 @@ def _links(space: DesignSpace, tree: Tree) -> tuple[dict[str, Any], float]:
                 "material": materials.get(name),
                 "wall_m": thickness,
                 "mass_kg": mass,
-                "safety_factor": None,
-                "safety_case": None,
+                "least_wall_m": wall.least,
+                **dict.fromkeys(("safety_factor", "safety_mode", "safety_case", "deflection_share")),
             }
     return rows, structure
 

@@ -8,6 +8,7 @@ torques follows by the chain rule, since torques are variables of the posture pr
 and in a lift along the speeds of joints likewise. One of postures and wrenches goes along these, which are
 variables too. The mean, the largest value or a quantile over cases is that of the same cases. What an
 actuator changes of the formula itself (its motor constant, its limit) is differenced at the same torques.
+A deflection moves with the robot's values too, differentiated by CasADi (`mechanics.robot_gradient`).
 Reach has its own tangent. What depends on the robot's bodies alone is differenced along the resized robot.
 Everything else goes along the whole tangent, as in `sensitivities`, which takes many times as long.
 
@@ -238,6 +239,11 @@ class _Design:
                         slope += derivative.along_speeds(number, quantity.by_speed(scene, postures))
                     if quantity.of_actuators:
                         slope += self._by_actuators(quantity, solution.case, postures)
+                    if quantity.by_robot is not None and self._sensitivities.robot is not None:
+                        robot, values = self._sensitivities.robot, self._result.program_values
+                        along, slopes = quantity.by_robot(robot, values, scene, postures)
+                        slope += along @ self._given if isinstance(self._given, np.ndarray) else along
+                        slope += self._by_posture(case, derivative, number, disturbance, slopes)
                     if quantity.by_posture is not None:
                         slopes = quantity.by_posture(scene, postures)
                         slope += self._by_posture(case, derivative, number, disturbance, slopes)

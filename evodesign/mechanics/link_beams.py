@@ -1,10 +1,9 @@
 """Hollow links as beams: how near they are to yielding in a posture, and how far the hands give way.
 
-A link with walls whose main solid is a cylinder or a box along the link is a beam from end to end of it;
-others, and what lies beside the main solid, are rigid. What a section transmits are force and moment of all
-that acts beyond it: on the links further from the root, or in the root link on those above.
+What a section transmits are force and moment of all that acts beyond it: on the links further from the root,
+or in the root link on those above.
 
-    safety factor    of both ends of every beam, under the weights and wrenches of the posture
+    safety factor    of both ends of every beam, under the weights and wrenches of a posture
     deflection       of the hands, downwards on average, under the load alone: virtual work of the load's
                      wrenches with half a unit force on each hand, both carried by the two feet alike, over
                      all beams (bending, twist) and all actuators (windup)
@@ -22,109 +21,24 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from evodesign.body.material import CATALOGUE
 from evodesign.body.placement import Placement
-from evodesign.body.shape import Box, Cylinder, Solid
 from evodesign.hardware.structure import (
-    STRENGTHS,
-    MaterialStrength,
-    RectangularTube,
-    RoundTube,
-    Section,
+    Failure,
     SectionLoad,
     bending_work,
-    safety_factor,
+    safety_factors,
     torsion_work,
 )
 from evodesign.mechanics.balance import GRAVITY
+from evodesign.mechanics.beams import Beam, beams_of
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Tree
 
 Array = NDArray[np.float64]
 
-ALONG = 0.7
-"""Cosine between a solid's axis and the direction of its link from which on the solid is a beam."""
-
-STRONG = {round(CATALOGUE[name].density, 6): strength for name, strength in STRENGTHS.items()}
-"""Stiffness and strength by density [kg/m^3]."""
-
 Wrench = tuple[str, Array, Array]
 """A link, a force [N] at its origin and a moment [N m], in the axes in which the tree stands."""
-
-
-@dataclass(frozen=True, slots=True)
-class Beam:
-    """A link as a beam, in the axes in which its tree stands.
-
-    Args:
-        link: its name.
-        ends: of the main solid [m]; the second is on the far side.
-        axes: along it, and the section's first and second axis; unit vectors.
-        section: all along it.
-        material: of its wall.
-    """
-
-    link: str
-    ends: tuple[Array, Array]
-    axes: tuple[Array, Array, Array]
-    section: Section
-    material: MaterialStrength
-
-    @property
-    def length(self) -> float:
-        """From end to end [m]."""
-        return float(np.linalg.norm(self.ends[1] - self.ends[0]))
-
-
-def beams_of(tree: Tree, places: Mapping[str, Placement]) -> list[Beam]:
-    """The links of a tree of numbers that are beams, where they are."""
-    found = []
-    for link in tree.links:
-        hollow = [solid for solid in link.solids if solid.wall is not None]
-        material = STRONG.get(round(float(hollow[0].density), 6)) if hollow else None
-        if not hollow or material is None:
-            continue
-        main = max(hollow, key=lambda solid: float(solid.shape.volume))
-        along = _section(main, _direction(tree, link.name))
-        if along is None:
-            continue
-        axis, section, length = along
-        turn = np.array(places[link.name].rotation, float) @ np.array(main.link_from_solid.rotation, float)
-        centre = np.array(places[link.name].apply(main.link_from_solid.translation), float)
-        others = [place for place in range(3) if place != abs(axis) - 1]
-        unit = np.sign(axis) * turn[:, abs(axis) - 1]
-        half = 0.5 * length * unit
-        axes = (unit, turn[:, others[0]], turn[:, others[1]])
-        found.append(Beam(link.name, (centre - half, centre + half), axes, section, material))
-    return found
-
-
-def _direction(tree: Tree, name: str) -> Array:
-    """From a link's parent joint to the middle of its child joints; upwards in the root."""
-    if name == tree.root:
-        return np.array([0.0, 0.0, 1.0])
-    children = [joint.parent_from_child.translation for joint in tree.child_joints[name]]
-    middle = np.mean(np.array(children, float), axis=0) if children else np.zeros(3)
-    size = float(np.linalg.norm(middle))
-    return middle / size if size > 1e-6 else middle
-
-
-def _section(solid: Solid, direction: Array) -> tuple[int, Section, float] | None:
-    """Which of its axes a solid's beam is along (1 to 3, negative for backwards), its section and length."""
-    in_solid = np.array(solid.link_from_solid.rotation, float).T @ direction
-    shape, wall = solid.shape, float(solid.wall or 0.0)
-    place = int(np.argmax(np.abs(in_solid))) if not isinstance(shape, Cylinder) else 2
-    if abs(in_solid[place]) < ALONG:
-        return None
-    axis = int(np.copysign(place + 1, in_solid[place]))
-    if isinstance(shape, Cylinder):
-        return axis, RoundTube(float(shape.radius), wall), float(shape.length)
-    if isinstance(shape, Box):
-        sides = [float(side) for side in shape.sides]
-        width, height = (side for number, side in enumerate(sides) if number != place)
-        return axis, RectangularTube(width, height, wall), sides[place]
-    return None
 
 
 class _Transmitted:
@@ -149,12 +63,8 @@ class _Transmitted:
 
     def beyond(self, beam: Beam, point: Array) -> tuple[Array, Array]:
         """Force, and moment about a point, of all beyond a beam."""
-        children = [joint.child for joint in self._tree.child_joints[beam.link]]
-        if beam.link == self._tree.root:
-            middle = (beam.ends[0] + beam.ends[1]) / 2.0
-            children = [c for c in children if (_origin(self._places, c) - middle) @ beam.axes[0] > 0.0]
-        force = sum((self._forces[child] for child in children), start=np.zeros(3))
-        moment = sum((self._moments[child] for child in children), start=np.zeros(3))
+        force = sum((self._forces[child] for child in beam.beyond), start=np.zeros(3))
+        moment = sum((self._moments[child] for child in beam.beyond), start=np.zeros(3))
         return force, moment - _cross(point, force)
 
     def torque(self, child: str, axis: Array) -> float:
@@ -173,10 +83,18 @@ def _origin(places: Mapping[str, Placement], link: str) -> Array:
     return np.array(places[link].translation, float)
 
 
-def safety_factors(
+@dataclass(frozen=True, slots=True, order=True)
+class Safety:
+    """By how much what a beam transmits may grow, and how it gives way then."""
+
+    factor: float
+    failure: Failure
+
+
+def link_safety(
     tree: Tree, base: Placement, joints: Mapping[str, float], wrenches: Sequence[Wrench]
-) -> dict[str, float]:
-    """The lesser safety factor of both ends of each of a tree's beams in a posture, by link.
+) -> dict[str, Safety]:
+    """The lesser safety of both ends of each of a tree's beams in a posture, by link.
 
     Args:
         tree: of numbers.
@@ -184,27 +102,53 @@ def safety_factors(
         joints: positions [rad] by name.
         wrenches: on hands and feet; weights are added.
     """
+    found: dict[str, Safety] = {}
+    for beam, load in loaded_ends(tree, base, joints, wrenches):
+        for failure, factor in safety_factors(beam.section, load, beam.length, beam.material).items():
+            safety = Safety(float(factor), failure)
+            found[beam.link] = min(safety, found.get(beam.link, safety))
+    return found
+
+
+def loaded_ends(
+    tree: Tree, base: Placement, joints: Mapping[str, float], wrenches: Sequence[Wrench]
+) -> Iterator[tuple[Beam, SectionLoad]]:
+    """What both ends of each of a tree's beams transmit in a posture; arguments as in `link_safety`."""
     places = link_frames(tree, base, joints)
-    transmitted = _Transmitted(tree, places, [*wrenches, *_weights(tree, places)])
-    factors: dict[str, float] = {}
+    transmitted = _Transmitted(tree, places, [*wrenches, *weights(tree, places)])
     for beam in beams_of(tree, places):
+        along, first, second = beam.axes
         for end in beam.ends:
             force, moment = transmitted.beyond(beam, end)
-            along, first, second = beam.axes
-            load = SectionLoad(
-                float(force @ along), (float(moment @ first), float(moment @ second)), float(moment @ along)
-            )
-            found = float(safety_factor(beam.section, load, beam.length, beam.material))
-            factors[beam.link] = min(found, factors.get(beam.link, np.inf))
-    return factors
+            bending = float(moment @ first), float(moment @ second)
+            yield beam, SectionLoad(float(force @ along), bending, float(moment @ along))
 
 
-def _weights(tree: Tree, places: Mapping[str, Placement]) -> Iterator[Wrench]:
+def weights(tree: Tree, places: Mapping[str, Placement]) -> Iterator[Wrench]:
+    """Of all links."""
     for link in tree.links:
         inertia = link.inertia
         force = np.array([0.0, 0.0, -GRAVITY * float(inertia.mass)])
         centre = np.array(places[link.name].apply(inertia.center), float) - _origin(places, link.name)
         yield link.name, force, _cross(centre, force)
+
+
+@dataclass(frozen=True, slots=True)
+class Shares:
+    """A deflection as the sum of its causes.
+
+    Args:
+        links: what the bending and twist of each beam add [m], by link.
+        windup: what the gear of each actuator adds [m], by joint.
+    """
+
+    links: Mapping[str, float]
+    windup: Mapping[str, float]
+
+    @property
+    def total(self) -> float:
+        """The deflection [m]."""
+        return sum(self.links.values()) + sum(self.windup.values())
 
 
 def hand_deflection(
@@ -213,8 +157,8 @@ def hand_deflection(
     joints: Mapping[str, float],
     hands: Mapping[str, Array],
     soles: Sequence[str],
-) -> float:
-    """How far the hands give way downwards under the load [m], the mean of both.
+) -> Shares:
+    """How far beams and actuators let the hands give way downwards under the load, the mean of both hands.
 
     Args:
         tree: of numbers.
@@ -226,30 +170,51 @@ def hand_deflection(
     places = link_frames(tree, base, joints)
     load = [(frame, wrench[:3], wrench[3:]) for frame, wrench in hands.items()]
     unit = [(frame, np.array([0.0, 0.0, -1.0 / len(hands)]), np.zeros(3)) for frame in hands]
+    return virtual_work(tree, places, load, unit, soles)
+
+
+def virtual_work(
+    tree: Tree,
+    places: Mapping[str, Placement],
+    load: Sequence[Wrench],
+    unit: Sequence[Wrench],
+    soles: Sequence[str],
+) -> Shares:
+    """How far a load moves along a unit load.
+
+    Args:
+        tree: of numbers.
+        places: of its links.
+        load: wrenches on frames.
+        unit: wrenches of a force of 1.
+        soles: frames under the feet, which carry both in equal parts.
+    """
     real, virtual = (
-        _Transmitted(tree, places, [*wrenches, *_carried(places, wrenches, soles)])
+        _Transmitted(tree, places, [*wrenches, *carried(places, wrenches, soles)])
         for wrenches in (load, unit)
     )
-    found = 0.0
+    links: dict[str, float] = {}
     for beam in beams_of(tree, places):
         along, *across = beam.axes
         ends = [(real.beyond(beam, end)[1], virtual.beyond(beam, end)[1]) for end in beam.ends]
         for axis, moment in zip(across, beam.section.second_moments, strict=True):
             (big, small), (big_end, small_end) = ((float(m @ axis), float(v @ axis)) for m, v in ends)
             stiffness = beam.material.young * float(moment)
-            found += bending_work(beam.length, stiffness, (big, big_end), (small, small_end))
+            bent = bending_work(beam.length, stiffness, (big, big_end), (small, small_end))
+            links[beam.link] = links.get(beam.link, 0.0) + bent
         twist, unit_twist = (float(each @ along) for each in ends[0])
         stiffness = beam.material.shear * float(beam.section.torsion_constant)
-        found += torsion_work(beam.length, stiffness, twist, unit_twist)
+        links[beam.link] += torsion_work(beam.length, stiffness, twist, unit_twist)
+    windup = {}
     for name, actuator in actuators_of(tree).items():
         joint = tree.joint_by_name[name]
         axis = np.array(places[joint.child].rotation, float) @ np.array(joint.axis)
         torques = (each.torque(joint.child, axis) for each in (real, virtual))
-        found += float(np.prod([*torques])) / float(actuator.stiffness)
-    return found
+        windup[name] = float(np.prod([*torques])) / float(actuator.stiffness)
+    return Shares(links, windup)
 
 
-def _carried(
+def carried(
     places: Mapping[str, Placement], wrenches: Sequence[Wrench], soles: Sequence[str]
 ) -> Iterator[Wrench]:
     """What the feet answer to wrenches on hands, in equal parts."""

@@ -1,4 +1,4 @@
-"""How what depends on the designed robot alone moves with a design: masses, and torques of standing.
+"""How what depends on the designed robot moves with a design: masses, torques of standing, deflections.
 
 The robot's tree is made of symbols once, as for the posture programs; CasADi differentiates.
 """
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from evodesign.design.space import Family
 from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.balance import standing_height_of_mass
+from evodesign.mechanics.deflection_gradient import DeflectionGradient
 from evodesign.mechanics.stance_case import StanceCase
 from evodesign.mechanics.stance_gradient import StanceGradient
 from evodesign.tree.equip import actuators_of
@@ -43,6 +44,7 @@ class RobotGradient:
     def __init__(self, family: Family, agent: Agent, cases: Sequence[StanceCase]) -> None:
         self._family, self._agent, self._cases = family, agent, tuple(cases)
         self._known: dict[str, ca.Function] = {}
+        self._deflections: dict[str, DeflectionGradient] = {}
 
     @cached_property
     def _symbolic(self) -> tuple[ca.SX, Tree]:
@@ -56,6 +58,13 @@ class RobotGradient:
         joints = tuple(dict.fromkeys((*self._agent.joints, *self._family.space.driven)))
         values, tree = self._symbolic
         return tuple(StanceGradient(case, tree, values, joints) for case in self._cases)
+
+    def deflection(self, agent: Agent) -> DeflectionGradient:
+        """That of the hands of a robot of the design."""
+        if agent.name not in self._deflections:
+            values, tree = self._symbolic
+            self._deflections[agent.name] = DeflectionGradient(tree, values, agent)
+        return self._deflections[agent.name]
 
     def of_masses(self, name: str, values: Sequence[float]) -> Array:
         """The derivatives of one of `OF_MASSES`, shape (n,).

@@ -17,14 +17,14 @@ Source: statics, as everywhere; pinocchio's centre of mass, Jacobians and gravit
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from evodesign.body.placement import Vector
+from evodesign.body.placement import Scalar, Vector
 from evodesign.mechanics.added_mass import AddedMasses, joint_slopes
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.floating_base import ROOT, FloatingBody
@@ -75,6 +75,7 @@ class StanceCase:
         loads: force [N] on frames of the robot, ahead, to the left and upwards.
         friction: largest horizontal force of a foot, as a share of its vertical one.
         raised: a hand at a height; None: where the joints put it.
+        dropped: height [m] from which the loads fall, or without any the robot.
     """
 
     name: str
@@ -85,11 +86,20 @@ class StanceCase:
     loads: tuple[tuple[str, Vector], ...] = ()
     friction: float = math.inf
     raised: RaisedHand | None = None
+    dropped: float = 0.0
 
     @property
     def groups(self) -> tuple[tuple[str, ...], ...]:
         """The groups of joints that move, those that raise a hand last."""
         return self.balance if self.raised is None else (*self.balance, self.raised.joints)
+
+    def positions(self, offsets: Sequence[Scalar]) -> dict[str, Scalar]:
+        """Joints that are not at zero [rad], their groups moved by offsets."""
+        found: dict[str, Scalar] = dict(self.joints)
+        for group, offset in zip(self.groups, offsets, strict=True):
+            for joint in group:
+                found[joint] = found.get(joint, 0.0) + offset
+        return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,12 +110,15 @@ class StanceTorques:
         torques: [N m] of every joint that moves; none where the robot cannot stand so.
         offsets: of the groups of joints that balance [rad].
         slopes: of what is balanced by the offsets, about [m/rad].
+        feet: force [N] of each foot, in the axes of the first sole; of a single foot the moment about z [N m]
+            comes last.
         reason: a sentence; empty where it stands.
     """
 
     torques: Mapping[str, float]
     offsets: tuple[float, ...] = ()
     slopes: Array | None = None
+    feet: tuple[tuple[float, ...], ...] = ()
     reason: str = ""
 
 
@@ -135,7 +148,8 @@ def stance_torques(body: FloatingBody, case: StanceCase, near: StanceTorques | N
         if math.hypot(force[0], force[1]) > case.friction * force[2]:
             return _fallen(case, f"{sole} slips")
     pairs = zip(body.joints, torques.tolist(), strict=True)
-    return StanceTorques(dict(pairs), tuple(offsets.tolist()), slopes)
+    passed = tuple(tuple(force.tolist()) for force in feet)
+    return StanceTorques(dict(pairs), tuple(offsets.tolist()), slopes, passed)
 
 
 def _fallen(case: StanceCase, why: str) -> StanceTorques:
@@ -264,7 +278,7 @@ class _Stance:
         return q
 
     def held(self, offsets: Array) -> tuple[Array, list[Array]]:
-        """Torques of the joints [N m], and the force of each foot [N]."""
+        """Torques of the joints [N m], and the force of each foot [N], of a single one its moment too."""
         model, data, q = self._model, self._data, self._upright(offsets)
         rows = np.array(pin.computeGeneralizedGravity(model, data, q))
         for frame, force in self._loads:
@@ -272,7 +286,7 @@ class _Stance:
         feet = self._feet(q)
         forces = np.linalg.lstsq(feet[:ROOT], rows[:ROOT], rcond=1e-10)[0]
         torques = (rows - feet @ forces)[self._body.order][ROOT:]
-        return torques, [forces[3 * number : 3 * number + 3] for number in range(len(self._soles))]
+        return torques, np.split(forces, len(self._soles))
 
     def _feet(self, q: Array) -> Array:
         """Transposed Jacobians of what feet pass: forces, and of a single foot the moment about z."""

@@ -68,10 +68,7 @@ class StanceGradient:
 
 def _statics(case: StanceCase, tree: Tree, offsets: Expression) -> tuple[Expression, dict[str, Expression]]:
     """The lever that balances at zero [m], and the torque of every joint [N m]."""
-    positions: dict[str, Expression] = dict(case.joints)
-    for group, offset in zip(case.groups, ca.vertsplit(offsets), strict=True):
-        for name in group:
-            positions[name] = positions.get(name, 0.0) + offset
+    positions = case.positions(ca.vertsplit(offsets))
     poses = forward(tree, Pose(ca.DM.eye(3), ca.DM.zeros(3)), positions)
     soles = [poses[sole] for sole in case.soles]
     upright, up = soles[0].rotation.T, soles[0].rotation[:, 2]

@@ -28,6 +28,7 @@ from evodesign.hardware.actuators import (
 from evodesign.hardware.catalogue import CatalogueRow, Gear, catalogue
 from evodesign.hardware.friction import GearFriction
 from evodesign.hardware.heat import Duty
+from evodesign.hardware.structure import STRENGTHS
 from evodesign.problem.design_space import known_materials
 from evodesign.problem.design_table import ActuatorTable, WallTable
 from evodesign.problem.file import ProblemFile
@@ -221,10 +222,13 @@ def walls_of(tables: ProblemFile, source: ProblemSource, tree: Tree) -> tuple[Wa
     """The walls of a problem.
 
     Raises:
-        InputError: an unknown link or material, a link or name twice, or not one material of every link.
+        InputError: an unknown link or material, a link or name twice, not one material of every link, or a
+            wall that cannot be made.
     """
     known, names, seen = known_materials(tables, source), set[str](), dict[str, str]()
-    walls = []
+    walls, duty = [], tables.duty
+    life = None if duty is None else duty.life_shifts
+    cycles = duty.lifts_per_hour * duty.shift_h * life if duty and life else None
     for position, table in enumerate(tables.design.wall):
         key = f"design.wall[{position}]"
         if table.name in names:
@@ -237,6 +241,7 @@ def walls_of(tables: ProblemFile, source: ProblemSource, tree: Tree) -> tuple[Wa
                 raise InputError(source.path, where, "a link in one wall", f"'{link}' also in {seen[link]}")
             seen[link] = key
         material = _material(table, key, source, known, tables)
+        least = _least_wall(table, key, source, tables)
         walls.append(
             Wall(
                 group=table.name,
@@ -245,6 +250,8 @@ def walls_of(tables: ProblemFile, source: ProblemSource, tree: Tree) -> tuple[Wa
                 material=table.material,
                 density=None if material is None else material.density,
                 share=tables.hardware.non_structural_share,
+                least=least,
+                cycles=cycles,
             )
         )
     return tuple(walls)
@@ -270,6 +277,21 @@ def _material(
             wanted = f"either a material or a [[design.density]] of '{link}'"
             raise InputError(source.path, f"{key}.material", wanted, "both")
     return known[table.material]
+
+
+def _least_wall(table: WallTable, key: str, source: ProblemSource, tables: ProblemFile) -> float:
+    """The least thickness that can be made [m], of the material that needs most; zero where none is known."""
+    chosen = [each.materials or () for each in tables.design.density if {*each.links} & {*table.links}]
+    materials = [table.material] if table.material else [name for names in chosen for name in names]
+    known = [(STRENGTHS[name].least_wall, name) for name in materials if name in STRENGTHS]
+    least, name = max(known, default=(0.0, ""))
+    why = f"the least wall of {name} that can be made ({STRENGTHS[name].wall_source})" if name else ""
+    if tables.hardware.least_wall_m is not None:
+        least, why = tables.hardware.least_wall_m, "hardware.least_wall_m"
+    thinnest = table.thickness_m[0] if isinstance(table.thickness_m, tuple) else table.thickness_m
+    if 0.0 < thinnest < least:
+        raise InputError(source.path, f"{key}.thickness_m", f"at least {least:g} m, {why}", f"{thinnest:g} m")
+    return least
 
 
 def _links_of_density(tables: ProblemFile) -> Iterator[str]:

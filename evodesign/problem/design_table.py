@@ -228,6 +228,8 @@ class LoadCaseTable(Table, frozen=True):
         factor: peak torque of the actuators over the torques of the case.
         hold: a payload in its hands.
         push: a force on it.
+        dropped_from_m: height from which the payload of `hold` falls into the hands, or without one the robot
+            onto its feet; links have to bear it. Since 0.3.
     """
 
     name: Name
@@ -237,6 +239,7 @@ class LoadCaseTable(Table, frozen=True):
     factor: Positive = 2.0
     hold: HoldTable | None = None
     push: PushTable | None = None
+    dropped_from_m: Positive | None = None
 
 
 class HardwareTable(Table, frozen=True):
@@ -244,11 +247,13 @@ class HardwareTable(Table, frozen=True):
 
     Attributes:
         non_structural_share: share of a hollow link's mass in the file that stays besides its wall.
+        least_wall_m: least wall that can be made; without it, that of the material. Since 0.3.
         gear_friction: whether friction in the gears of `[[design.actuator]]` counts: it helps motors to hold,
             and they work against it in a lift. Since 0.3.
     """
 
     non_structural_share: Share = 0.3
+    least_wall_m: Positive | None = None
     gear_friction: bool = False
 
 
@@ -265,6 +270,7 @@ class DutyTable(Table, frozen=True):
             0.3.
         thermal_time_constant_s: thermal time constant of the winding. Since 0.3.
         air_c: temperature of the air. Since 0.3.
+        life_shifts: shifts in the robot's life, for `fatigue_safety_factor`. Since 0.3.
     """
 
     lifts_per_hour: Positive
@@ -273,6 +279,7 @@ class DutyTable(Table, frozen=True):
     winding_limit_c: Annotated[float, Meta(gt=60.0, le=250.0)]
     thermal_time_constant_s: Positive
     air_c: Annotated[float, Meta(ge=-40.0, le=55.0)] = 25.0
+    life_shifts: Positive | None = None
 
 
 class AllocationTable(Table, frozen=True):

@@ -33,7 +33,7 @@ def standing_cases(
     Raises:
         InputError: a name twice, a joint that neither moves nor is driven or is beyond its limits, other than
             one group of joints to balance on both feet and two on one, a height without joints that raise
-            the hand, or joints without a height.
+            the hand, or joints without a height, a fall beside a push or without walls.
     """
     if not robots:
         if tables.load_case:
@@ -46,7 +46,8 @@ def standing_cases(
         key = f"load_case[{position}]"
         if table.name in {case.name for case in found}:
             raise InputError(source.path, f"{key}.name", "a unique name", f"'{table.name}' twice")
-        found.append(_case(table, key, source, robot, joints, tables.limits.friction))
+        walls = bool(tables.design.wall)
+        found.append(_case(table, key, source, robot, joints, tables.limits.friction, walls))
     return tuple(found)
 
 
@@ -57,6 +58,7 @@ def _case(
     robot: Agent,
     joints: Sequence[str],
     friction: float,
+    walls: bool,
 ) -> StanceCase:
     for joint, angle in table.joints_deg.items():
         where = f"{key}.joints_deg.{joint}"
@@ -72,6 +74,7 @@ def _case(
         plural = "s" if groups > 1 else ""
         wanted = f"{groups} group{plural} of joints to balance with feet = '{table.feet}'"
         raise InputError(source.path, f"{key}.balance", wanted, f"{len(table.balance)}")
+    dropped = _dropped(table, key, source, walls)
     return StanceCase(
         name=table.name,
         joints={joint: math.radians(angle) for joint, angle in table.joints_deg.items()},
@@ -81,7 +84,20 @@ def _case(
         loads=(*_held(table.hold, robot), *_pushed(table.push, robot)),
         friction=friction,
         raised=_raised(table, f"{key}.hold", source, robot, joints),
+        dropped=dropped,
     )
+
+
+def _dropped(table: LoadCaseTable, key: str, source: ProblemSource, walls: bool) -> float:
+    """The height of a fall [m]; zero of none."""
+    if table.dropped_from_m is None:
+        return 0.0
+    where = f"{key}.dropped_from_m"
+    if not walls:
+        raise InputError(source.path, where, "a [[design.wall]], whose links have to bear the fall", "none")
+    if table.push is not None:
+        raise InputError(source.path, where, "a fall or a push", "both")
+    return table.dropped_from_m
 
 
 def _limits(robot: Agent, joint: str) -> tuple[float, float]:

@@ -13,6 +13,7 @@ from evodesign.mechanics.lumbar_load import has_lumbar_disc
 from evodesign.problem.file import ProblemFile
 from evodesign.quantities.hardware_quantities import (
     COST,
+    FATIGUE,
     NEED_ACTUATORS,
     NEED_WALLS,
     OF_BEAMS,
@@ -58,13 +59,16 @@ def _refuse_without_hardware(key: str, name: str, tables: ProblemFile, source: P
         raise InputError(source.path, key, f"a [[design.actuator]] for '{name}'", "none")
     if name.endswith(WINDING) and tables.duty is None:
         raise InputError(source.path, key, f"a [duty] for '{name}'", "none")
+    if name == FATIGUE and (tables.duty is None or tables.duty.life_shifts is None):
+        raise InputError(source.path, key, f"a [duty] with life_shifts for '{name}'", "none")
     if name == COST:
         _refuse_without_prices(key, tables, source)
     if name.endswith(NEED_WALLS) and not tables.design.wall:
         raise InputError(source.path, key, f"a [[design.wall]] for '{name}'", "none")
+    able = [each for each, has in STRENGTHS.items() if name != FATIGUE or has.fatigue]
     for position, wall in enumerate(tables.design.wall if name.endswith(OF_BEAMS) else ()):
-        if wall.material is not None and wall.material not in STRENGTHS:
-            wanted = f"one of {', '.join(STRENGTHS)}, as '{name}' is asked for"
+        if wall.material is not None and wall.material not in able:
+            wanted = f"one of {', '.join(able)}, as '{name}' is asked for"
             raise InputError(source.path, f"design.wall[{position}].material", wanted, f"'{wall.material}'")
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from evodesign.design.space import DesignSpace
 from evodesign.mechanics.agent import Agent
+from evodesign.mechanics.robot_gradient import RobotGradient
 from evodesign.mechanics.scene import Scene, scene_of
 from evodesign.posture.formulations.codesign import JointSettings
 from evodesign.posture.formulations.reach import Reach
@@ -133,6 +134,14 @@ class PostureSlopes:
         return found
 
 
+ByRobot = Callable[
+    [RobotGradient, Sequence[float], Scene, Mapping[str, AgentPosture]],
+    tuple[Array, Mapping[str, PostureSlopes]],
+]
+"""From derivatives of the robot, what programs are given, a scene and the postures in it to a quantity's
+derivatives by what programs are given, shape (n,), and by postures, by agent."""
+
+
 ByPosture = Callable[[Scene, Mapping[str, AgentPosture]], Mapping[str, PostureSlopes]]
 """From a scene and the postures in it to a quantity's derivatives by postures, by agent."""
 
@@ -143,9 +152,10 @@ class CaseQuantity:
 
     `by_torque` is its derivative, for a quantity that depends on torques alone, `by_speed` that by the
     speeds of joints, for one that depends on them as well, and `by_posture` that by postures and wrenches,
-    for one of people that depends on these (and on torques, if it has `by_torque` too). Without both
-    `by_torque` and `by_posture`, gradients are taken by differences along the exact tangent, which costs
-    many times as much. `of_actuators` says whether the formula may hold numbers of the robot's actuators.
+    for one of people that depends on these (and on torques, if it has `by_torque` too). `by_robot` is that of
+    one which depends on the designed robot and its posture. Without any, gradients are taken by differences
+    along the exact tangent, which costs many times as much.
+    `of_actuators` says whether the formula may hold numbers of the robot's actuators.
     """
 
     unit: str
@@ -153,12 +163,13 @@ class CaseQuantity:
     by_torque: ByTorque | None = None
     by_speed: ByTorque | None = None
     by_posture: ByPosture | None = None
+    by_robot: ByRobot | None = None
     of_actuators: bool = True
 
     @property
     def has_slopes(self) -> bool:
         """Whether a formula gives its gradient."""
-        return self.by_torque is not None or self.by_posture is not None
+        return any(each is not None for each in (self.by_torque, self.by_posture, self.by_robot))
 
 
 @dataclass(frozen=True, slots=True)

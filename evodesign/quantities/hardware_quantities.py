@@ -5,6 +5,7 @@
     actuator_mass    sum of the actuators' masses [kg]
     hand_deflection  how far the hands give way under the load: bending, twist and windup [mm]
     least_safety_factor  of all links with walls and cases, against yield and buckling
+    fatigue_safety_factor  of all links with walls and cases, each held as often as the duty says
     torque_margin    least rated torque over |tau| of all actuators and cases: 1 for one at its limit
     cost             sum of the actuators' prices [EUR]
     winding_temperature  of the actuator that gets warmest in the problem's duty (`hardware.heat`) [deg C]
@@ -15,14 +16,19 @@ masses and prices are those of one, powers are added up, and the rest is that of
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from evodesign.body.placement import Placement
 from evodesign.hardware.friction import MotorTorque
 from evodesign.hardware.heat import RATED_AIR
+from evodesign.hardware.structure import von_mises
 from evodesign.mechanics import link_beams
 from evodesign.mechanics.agent import Agent
-from evodesign.posture.results import AgentPosture
+from evodesign.mechanics.robot_gradient import RobotGradient
+from evodesign.posture.results import AgentPosture, Array
+from evodesign.quantities.design_result import CaseQuantity, PostureSlopes
 from evodesign.quantities.over_agents import designed, largest, least, over_agents, total
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.frames import link_frames
@@ -37,7 +43,10 @@ WINDING = "winding_temperature"
 COST = "cost"
 """The quantity that needs models whose prices are known."""
 
-NEED_WALLS = ("least_safety_factor",)
+FATIGUE = "fatigue_safety_factor"
+"""The quantity that needs a `[duty]` with a life, and walls whose fatigue is known."""
+
+NEED_WALLS = ("least_safety_factor", FATIGUE)
 """How the names of quantities end that tell nothing without walls."""
 
 
@@ -120,24 +129,61 @@ TORQUE_SHARE = over_agents(designed, largest, "1", torque_share)
 
 def hand_deflection(robot: Agent, posture: AgentPosture) -> float:
     """How far a robot's hands give way downwards under the load, the mean of both [mm]."""
+    return 1000.0 * deflection_shares(robot, posture).total
+
+
+def deflection_shares(robot: Agent, posture: AgentPosture) -> link_beams.Shares:
+    """What each link and each joint with an actuator adds to it."""
     hands = {hand.frame: posture.wrenches[hand.name] for hand in robot.hands}
-    soles = robot.foot_frames
-    return 1000.0 * link_beams.hand_deflection(robot.tree, _base(posture), posture.joints, hands, soles)
+    return link_beams.hand_deflection(robot.tree, _base(posture), posture.joints, hands, robot.foot_frames)
 
 
-HAND_DEFLECTION = over_agents(designed, largest, "mm", hand_deflection)
+def deflection_slopes(
+    gradient: RobotGradient, values: Sequence[float], robot: Agent, posture: AgentPosture
+) -> tuple[Array, PostureSlopes]:
+    """Its derivatives by what programs are given, and by posture and wrenches of the load [mm/...]."""
+    angles, held = np.asarray(posture.base_angles), posture.wrenches
+    found = gradient.deflection(robot).at(robot.tree, values, angles, posture.joints, held)
+    by_posture = PostureSlopes(found.base_angles, found.joints, found.wrenches)
+    return 1000.0 * found.values, by_posture.times(1000.0)
+
+
+HAND_DEFLECTION = over_agents(designed, largest, "mm", hand_deflection, by_robot=deflection_slopes)
 
 
 def least_safety_factor(robot: Agent, posture: AgentPosture) -> float:
     """The least safety factor of a robot's links with walls; infinite without any."""
-    return min(link_safety(robot, posture).values(), default=np.inf)
+    return min((each.factor for each in link_safety(robot, posture).values()), default=np.inf)
 
 
 SAFETY_FACTOR = over_agents(designed, least, "1", least_safety_factor)
 
 
-def link_safety(robot: Agent, posture: AgentPosture) -> dict[str, float]:
-    """The safety factor of each of a robot's links that is a beam, by name; its tree is the design's."""
+def link_safety(robot: Agent, posture: AgentPosture) -> dict[str, link_beams.Safety]:
+    """The safety of each of a robot's links that is a beam, by name; its tree is the design's."""
+    return link_beams.link_safety(robot.tree, _base(posture), posture.joints, _wrenches(robot, posture))
+
+
+def fatigue_factor(cycles: float) -> CaseQuantity:
+    """The least factor by which stresses may grow that come and go so often; infinite without walls."""
+
+    def of_robot(robot: Agent, posture: AgentPosture) -> float:
+        wrenches = _wrenches(robot, posture)
+        ends = link_beams.loaded_ends(robot.tree, _base(posture), posture.joints, wrenches)
+        return min(
+            (
+                beam.material.fatigue.safety_factor(von_mises(beam.section, load), cycles)
+                for beam, load in ends
+                if beam.material.fatigue is not None
+            ),
+            default=np.inf,
+        )
+
+    return over_agents(designed, least, "1", of_robot)
+
+
+def _wrenches(robot: Agent, posture: AgentPosture) -> list[link_beams.Wrench]:
+    """On hands and feet, in the world's axes."""
     base = _base(posture)
     places = link_frames(robot.tree, base, posture.joints)
     held = [(hand.frame, posture.wrenches[hand.name]) for hand in robot.hands]
@@ -145,7 +191,7 @@ def link_safety(robot: Agent, posture: AgentPosture) -> dict[str, float]:
     for foot in robot.feet:
         turn, wrench = np.array(places[foot.frame].rotation, float), posture.wrenches[foot.name]
         wrenches.append((foot.frame, turn @ wrench[:3], turn @ wrench[3:]))
-    return link_beams.safety_factors(robot.tree, base, posture.joints, wrenches)
+    return wrenches
 
 
 def _base(posture: AgentPosture) -> Placement:
@@ -164,5 +210,5 @@ def cost(tree: Tree) -> float | None:
     return float(sum(known)) if prices and len(known) == len(prices) else None
 
 
-OF_BEAMS = ("hand_deflection", "least_safety_factor")
+OF_BEAMS = ("hand_deflection", *NEED_WALLS)
 """How the names of quantities end that need walls of known stiffness and strength."""

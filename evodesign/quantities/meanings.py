@@ -71,7 +71,13 @@ MEANINGS: Mapping[str, Meaning] = {
         "rated torque over joint torque, the least of all actuators and cases", Sense.MAXIMISE
     ),
     "least_safety_factor": Meaning(
-        "least safety factor of links with walls over all cases, against yield and buckling", Sense.MAXIMISE
+        "least safety factor of links with walls over all cases and load cases, against yield and buckling",
+        Sense.MAXIMISE,
+    ),
+    "fatigue_safety_factor": Meaning(
+        "least factor by which stresses of links with walls may grow that come and go with every lift of the "
+        "`[duty]` ([fatigue](hardware.md#impact-and-fatigue))",
+        Sense.MAXIMISE,
     ),
     "com_height": Meaning(
         "height of the robot's centre of mass above its soles, all joints at zero", Sense.MAXIMISE

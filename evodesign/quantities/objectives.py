@@ -47,6 +47,7 @@ from evodesign.quantities.design_result import (
     values_over_instants,
 )
 from evodesign.quantities.hardware_quantities import (
+    FATIGUE,
     HAND_DEFLECTION,
     HOLDING_POWER,
     SAFETY_FACTOR,
@@ -55,6 +56,7 @@ from evodesign.quantities.hardware_quantities import (
     WINDING_TEMPERATURE,
     actuator_mass,
     cost,
+    fatigue_factor,
 )
 from evodesign.quantities.motion_quantities import (
     ENDURANCE,
@@ -183,8 +185,20 @@ def torque_margin(result: DesignResult) -> float | None:
 
 
 def safety_of_links(result: DesignResult) -> float | None:
-    """The least safety factor of the robot's links, over all cases; None without walls."""
+    """The least safety factor of the robot's links, over all cases and load cases; None without walls."""
     factors = values_over_instants(SAFETY_FACTOR.value, result)
+    if factors is None:
+        return None
+    alone = () if result.standing is None else result.standing.safety(result.tree)
+    standing = [each.factor for _, links in alone for each in links.values()]
+    least = min([each for values in factors for each in values] + standing, default=math.inf)
+    return least if least < math.inf else None
+
+
+def fatigue_of_links(result: DesignResult) -> float | None:
+    """The least fatigue safety factor of the robot's links, over all cases; None without walls or a life."""
+    cycles = [wall.cycles for wall in result.space.walls if wall.cycles is not None]
+    factors = values_over_instants(fatigue_factor(cycles[0]).value, result) if cycles else None
     least = math.inf if factors is None else min(each for values in factors for each in values)
     return least if least < math.inf else None
 
@@ -301,6 +315,7 @@ NEED_ROBOTS = frozenset(
     {
         *("robot_torque", "peak_torque", "holding_power", "hand_deflection", WINDING, POWER, ENERGY),
         *("mass", "com_height", "actuator_mass", "cost", "torque_margin", "least_safety_factor"),
+        FATIGUE,
         *(BODIES_APART, PARTS_APART, *PAPER_COSTS),
         *SIMULATED,
     }
@@ -338,6 +353,7 @@ WHOLE: Mapping[str, ObjectiveKind] = {
     ENDURANCE: ObjectiveKind("s", endurance_seconds),
     "torque_margin": ObjectiveKind("1", torque_margin),
     "least_safety_factor": ObjectiveKind("1", safety_of_links),
+    FATIGUE: ObjectiveKind("1", fatigue_of_links),
     "com_height": ObjectiveKind("m", com_height),
     ENERGY: ObjectiveKind("J", energy),
     LEAST_TIME: ObjectiveKind("s", mean_least_time),

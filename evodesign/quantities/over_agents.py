@@ -5,16 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
+import numpy as np
+
 from evodesign.mechanics.agent import Agent, Role
+from evodesign.mechanics.robot_gradient import RobotGradient
 from evodesign.mechanics.scene import Scene
-from evodesign.posture.results import AgentPosture
-from evodesign.quantities.design_result import ByPosture, ByTorque, CaseQuantity, PostureSlopes
+from evodesign.posture.results import AgentPosture, Array
+from evodesign.quantities.design_result import ByPosture, ByRobot, ByTorque, CaseQuantity, PostureSlopes
 
 AgentValue = Callable[[Agent, AgentPosture], float]
 """From an agent and its posture to a value."""
 
 AgentSlopes = Callable[[Agent, AgentPosture], Mapping[str, float]]
 """To a value's derivatives by the torque or the speed of each joint."""
+
+RobotSlopes = Callable[[RobotGradient, Sequence[float], Agent, AgentPosture], tuple[Array, PostureSlopes]]
+"""To a value's derivatives by what programs are given, and by the agent's posture."""
 
 Way = Callable[[Sequence[float]], tuple[float, Sequence[float]]]
 """From the values of agents to that of all, and its derivatives by each."""
@@ -67,6 +73,7 @@ def over_agents(
     by_torque: AgentSlopes | None = None,
     by_speed: AgentSlopes | None = None,
     by_posture: Callable[[Agent, AgentPosture], PostureSlopes] | None = None,
+    by_robot: RobotSlopes | None = None,
     of_actuators: bool = True,
 ) -> CaseQuantity:
     """The quantity that a value of each of some agents is of them all.
@@ -79,6 +86,7 @@ def over_agents(
         by_torque: its derivatives by torques, as in `CaseQuantity`.
         by_speed: likewise by speeds.
         by_posture: likewise by posture and wrenches.
+        by_robot: likewise by what programs are given, and by posture and wrenches.
         of_actuators: whether the value of a robot may depend on its actuators beside torques and speeds.
     """
 
@@ -111,5 +119,23 @@ def over_agents(
             for agent, posture, weight in weighted(scene, postures)
         }
 
-    driven = of_actuators and who is not people
-    return CaseQuantity(unit, of_all, slopes(by_torque), slopes(by_speed), posture_slopes(), driven)
+    def robot_slopes() -> ByRobot | None:
+        if by_robot is None:
+            return None
+
+        def found(
+            robot: RobotGradient, values: Sequence[float], scene: Scene, postures: Mapping[str, AgentPosture]
+        ) -> tuple[Array, Mapping[str, PostureSlopes]]:
+            by_values, by_postures = np.zeros(len(values)), {}
+            for agent, posture, weight in weighted(scene, postures):
+                own, by_own = by_robot(robot, values, agent, posture)
+                by_values += weight * own
+                by_postures[agent.name] = by_own.times(weight)
+            return by_values, by_postures
+
+        return found
+
+    driven = of_actuators and who is not people and by_robot is None
+    return CaseQuantity(
+        unit, of_all, slopes(by_torque), slopes(by_speed), posture_slopes(), robot_slopes(), driven
+    )

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
 from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.floating_base import FloatingBody
+from evodesign.mechanics.link_beams import Safety
+from evodesign.mechanics.stance_beams import impact, stance_safety
 from evodesign.mechanics.stance_case import StanceCase, StanceTorques, stance_torques
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.model import Tree
@@ -56,6 +58,13 @@ class StanceModel:
             {joint: case.factor * abs(torque) for joint, torque in each.torques.items()}
             for case, each in found
         ]
+
+    def safety(self, tree: Tree) -> Iterator[tuple[str, dict[str, Safety]]]:
+        """What each case is called, and the safety of each link that is a beam, by link."""
+        for case, found in self.torques(tree):
+            falls = case.dropped and not found.reason
+            times = f", {impact(tree, case, found)[0]:.3g} times its load" if falls else ""
+            yield f"{case.name}{times}", stance_safety(tree, case, found)
 
     def shares(self, tree: Tree) -> list[float] | None:
         """The largest of these over peak torque, of each case; None where the robot cannot stand."""

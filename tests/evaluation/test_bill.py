@@ -12,16 +12,21 @@ import numpy as np
 import pytest
 
 from evodesign.body.material import CATALOGUE
+from evodesign.body.placement import Placement
 from evodesign.evaluation.bill import bill_of_materials, link_materials
 from evodesign.evaluation.evaluate import Evaluator, detail_of
+from evodesign.hardware.structure import STRENGTHS, Failure, wall_buckling_stress
 from evodesign.mechanics.agent import ROBOT, SIDES
 from evodesign.mechanics.balance import GRAVITY
+from evodesign.mechanics.beams import beams_of
 from evodesign.posture.results import AgentPosture
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source
 from evodesign.quantities.design_result import DesignResult
+from evodesign.quantities.hardware_quantities import link_safety
 from evodesign.quantities.objectives import objective_kinds
 from evodesign.tree.equip import actuators_of
+from evodesign.tree.frames import link_frames
 from evodesign.tree.kinematics import euler_rotation
 from evodesign.tree.mjcf_write import mjcf_text
 from evodesign.tree.model import Tree
@@ -73,7 +78,32 @@ def test_the_bill_adds_up_and_names_what_governs(
     assert (wall["material"], wall["wall_m"]) == ("aluminium_6061", 0.002)
     least = min(row["safety_factor"] for row in bill["links"].values() if row["safety_factor"])
     assert least == pytest.approx(objective_kinds()["least_safety_factor"].value(result), rel=1e-12)
-    assert wall["safety_case"] in {str(solution.case.task) for solution in result.cases}
+    alone = {case.name for case in hardware.stances}
+    assert wall["safety_case"] in {str(solution.case.task) for solution in result.cases} | alone
+
+
+@pytest.mark.slow
+def test_links_tire_by_the_stresses_that_their_safety_factors_tell(results: list[DesignResult]) -> None:
+    result, cycles = results[0], 1.2e6
+    walls = tuple(replace(wall, cycles=cycles) for wall in result.space.walls)
+    living = replace(result, space=replace(result.space, walls=walls))
+    material = STRENGTHS["aluminium_6061"]
+    breaks = {
+        beam.link: {
+            Failure.YIELD: material.strength,
+            Failure.WALL: wall_buckling_stress(beam.section, material),
+        }
+        for beam in beams_of(result.tree, link_frames(result.tree, Placement(), {}))
+    }
+    stresses = []
+    for solution in result.cases:
+        robot = result.scene_of(solution.case).robot
+        for link, safety in link_safety(robot, solution.postures[ROBOT]).items():
+            stresses.append(breaks[link][safety.failure] / safety.factor)
+    amplitude = (14479.0 / cycles**0.5 + 96.5) * 1e6
+    goodman = 1.0 / (max(stresses) / 2.0 / amplitude + max(stresses) / 2.0 / 310e6)
+    assert objective_kinds()["fatigue_safety_factor"].value(living) == pytest.approx(goodman)
+    assert objective_kinds()["fatigue_safety_factor"].value(result) is None
 
 
 @pytest.mark.slow

@@ -33,6 +33,7 @@ NEED_MORE = (
     "parts_apart",
     "shared_reach_height",
     "least_safety_factor",
+    "fatigue_safety_factor",
     "cost",
     "energy",
     "lift_seconds",

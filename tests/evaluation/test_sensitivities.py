@@ -28,7 +28,8 @@ from evodesign.tree.kinematics import Pose, forward
 OBJECTIVES = {
     name: kind
     for name, kind in objective_kinds().items()
-    if name not in ("bodies_apart", "parts_apart", "torque_margin", "least_safety_factor", "cost", "energy")
+    if name not in ("bodies_apart", "parts_apart", "torque_margin", "cost", "energy")
+    and not name.endswith("safety_factor")
     and "lift_seconds" not in name
     and name not in SIMULATED
 }

@@ -53,6 +53,7 @@ lifts_per_hour = 30
 hold_s = 10.0
 shift_h = 8.0
 winding_limit_c = 120.0
+life_shifts = 2500
 thermal_time_constant_s = 120.0
 
 [[design.actuator]]

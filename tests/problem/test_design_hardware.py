@@ -21,7 +21,7 @@ from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.designs import designs_text, read_designs
 from evodesign.problem.model_json import model_json
 from evodesign.quantities.design_result import DesignResult
-from evodesign.quantities.hardware_quantities import cost
+from evodesign.quantities.hardware_quantities import FATIGUE, cost
 from evodesign.quantities.motion_quantities import motion_power_by_speed, motion_power_by_torque, power
 from evodesign.quantities.objectives import objective_kinds
 from evodesign.records import Constraint, Hold, Objective, ProblemSource, Sense, design_of
@@ -55,6 +55,8 @@ winding_limit_c = 120.0
 thermal_time_constant_s = 120.0
 """
 WARM = "\n[constraints]\nwinding_temperature_c = { upper = 100.0 }\n"
+TIRED = "\n[constraints]\nfatigue_safety_factor = { lower = 2.0 }\n"
+LIVING = DUTY + "life_shifts = 2500\n"
 FRICTION = "\n[hardware]\ngear_friction = true\n"
 WALL = '\n[[design.wall]]\nname = "arms"\nlinks = ["l_arm", "r_arm"]\n'
 THIN = "thickness_m = [0.001, 0.004]\n"
@@ -218,11 +220,23 @@ def test_designs_name_torques_walls_and_models() -> None:
         ),
         (SHOULDER + SIZES + SQUAT.replace("spin", "spine"), ["load_case[0]", "did you mean 'spin'?"]),
         (SHOULDER + SIZES + SQUAT.replace("60.0", "600.0"), ["joints_deg.l_shoulder", "600"]),
+        (
+            SHOULDER + SIZES + SQUAT + "dropped_from_m = 0.1\n",
+            ["load_case[0].dropped_from_m", "a [[design.wall]]"],
+        ),
         (SHOULDER + SIZES + SQUAT + SQUAT, ["load_case[1].name", "'squat' twice"]),
         (SHOULDER + SIZES + SQUAT + 'feet = "left"\n', ["load_case[0].balance", "2 groups"]),
         (WALL + "thickness_m = 0.3\n" + IN_ALUMINIUM, ["wall of link l_arm", "less than half"]),
         (WALL + "thickness_m = -0.1\n" + IN_ALUMINIUM, ["thickness_m", "a positive number"]),
         (WALL + "thickness_m = [0.2, 0.1]\n" + IN_ALUMINIUM, ["a rising pair"]),
+        (
+            WALL + "thickness_m = [0.0005, 0.002]\n" + IN_ALUMINIUM,
+            ["design.wall[0].thickness_m", "at least 0.001 m", "aluminium_6061", "sinbo", "0.0005 m"],
+        ),
+        (
+            WALL + "thickness_m = 0.002\n" + IN_ALUMINIUM + "\n[hardware]\nleast_wall_m = 0.003\n",
+            ["design.wall[0].thickness_m", "at least 0.003 m, hardware.least_wall_m", "0.002 m"],
+        ),
         (WALL + THIN, ["design.wall[0].material", "or a [[design.density]] of 'l_arm'"]),
         (WALL + THIN + 'material = "aluminum_6061"\n', ["did you mean 'aluminium_6061'?"]),
         (
@@ -239,6 +253,14 @@ def test_designs_name_torques_walls_and_models() -> None:
         (DUTY, ["duty", "a [[design.actuator]] that gets warm"]),
         (SHOULDER + SIZES + DUTY.replace("= 20.0", "= 61.0"), ["duty.hold_s", "at most 60 s"]),
         (SHOULDER + SIZES + WARM, ["constraints.winding_temperature_c", "a [duty] for"]),
+        (
+            SHOULDER + SIZES + WALL + THIN + IN_ALUMINIUM + DUTY + TIRED,
+            [FATIGUE, "a [duty] with life_shifts"],
+        ),
+        (
+            SHOULDER + SIZES + WALL + THIN + 'material = "aluminium_7075"\n' + LIVING + TIRED,
+            ["design.wall[0].material", "one of aluminium_6061, as", "'aluminium_7075'"],
+        ),
         (SHOULDER + SIZES + DUTY.replace("c = 120", "c = 20"), ["duty.winding_limit_c", "60"]),
         (
             SHOULDER + SIZES + 'gear = "strain_wave"\n' + FRICTION,

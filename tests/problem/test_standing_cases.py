@@ -198,6 +198,7 @@ def test_a_push_makes_feet_slip_and_a_light_foot_pull(repository: Path) -> None:
         (HOLD.replace('["l_shoulder_pitch"]', '["l_ankle_pitch"]'), ["'l_ankle_pitch', which is in balance"]),
         (HOLD.replace('["l_shoulder_pitch"]', '["l_sholder_pitch"]'), ["did you mean 'l_shoulder_pitch'?"]),
         (PUSH.replace("force_n = 40.0", 'force_n = 40.0, at = "head"'), ["load_case[2].push.at", "'head'"]),
+        (PUSH + "dropped_from_m = 0.1", ["load_case[2].dropped_from_m", "a fall or a push"]),
         (PUSH.replace("40.0", "0.0"), ["load_case[2].push.force_n"]),
         (HOLD.replace("l_elbow = 70.0", "l_wrist_yaw = 1.0"), ["moving joint", "'l_wrist_yaw'"]),
     ],

@@ -86,12 +86,13 @@ def test_peak_torque_is_the_largest_share_of_a_joints_limit(result: DesignResult
 
 
 def test_every_objective_has_a_unit_and_a_value(result: DesignResult) -> None:
-    """Only what needs [collisions], a lift (tests/evaluation/test_lifts.py) or [push] is none here."""
+    """Only what needs [collisions], a life, a lift (tests/evaluation/test_lifts.py) or [push] is none."""
     known = driven(replace(limited(result), people_highest=1.9))
     assert all(kind.unit for kind in OBJECTIVES.values())
     assert [name for name, kind in OBJECTIVES.items() if kind.value(known) is None] == [
         "bodies_apart",
         "parts_apart",
+        "fatigue_safety_factor",
         "energy",
         "lift_seconds",
         "worst_lift_seconds",

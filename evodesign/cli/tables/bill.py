@@ -24,6 +24,11 @@ def clearance_in_words(bill: Mapping[str, Any]) -> str:
     return f"{one} and {other} have least room: {abs(1e3 * least['clearance_m']):.2g} mm{fit}"
 
 
+def captions(bill: Mapping[str, Any]) -> str:
+    """What governs walls and actuators, and which parts have least room; a line each."""
+    return "\n".join(printable(each) for each in (clearance_in_words(bill), *bill["governs"]) if each)
+
+
 def actuators_table(bill: Mapping[str, Any], title: str = "") -> FittedTable:
     """The actuators of a bill, each with the joint of its group that is used most.
 
@@ -36,7 +41,7 @@ def actuators_table(bill: Mapping[str, Any], title: str = "") -> FittedTable:
         *numbers("joints", "rated [N m]", "peak [N m]", "kg each", "used"),
         *names("most by", "joint"),
     ]
-    table = titled(title, columns, caption=printable(clearance_in_words(bill)))
+    table = titled(title, columns, caption=captions(bill))
     groups: dict[str, dict[str, Mapping[str, Any]]] = {}
     for joint, row in bill["joints"].items():
         groups.setdefault(row["actuator"], {})[joint] = row

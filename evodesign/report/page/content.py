@@ -268,25 +268,28 @@ class ActuatorContent(Part, frozen=True):
 
 
 class WallContent(Part, frozen=True):
-    """What a hollow link is made of; no safety factor of one that is no beam."""
+    """What a hollow link is made of, as in `evaluation.bill`; no safety factor of one that is no beam."""
 
     link: str
     material: str | None
     wall_m: float
     mass_kg: float
     safety_factor: float | None
+    safety_mode: str | None
     safety_case: str | None
 
 
 class HardwareContent(Part, frozen=True):
     """The bill of materials; masses of `actuators`, `structure`, `rest` and in `total`.
 
-    `least_clearance` names two parts and tells by how much they go together, negative where they do not.
+    `governs` are sentences on walls and actuators. `least_clearance` names two parts and tells by how much
+    they go together, negative where they do not.
     """
 
     actuators: tuple[ActuatorContent, ...]
     walls: tuple[WallContent, ...]
     mass_kg: dict[str, float]
+    governs: tuple[str, ...]
     least_clearance: dict[str, Any] | None = None
 
 

@@ -32,8 +32,12 @@ def hardware_content(
         groups.setdefault(row["actuator"], {})[joint] = row
     return HardwareContent(
         actuators=tuple(_actuator(name, rows, tree, cases) for name, rows in groups.items()),
-        walls=tuple(WallContent(link=link, **row) for link, row in bill["links"].items()),
+        walls=tuple(
+            WallContent(link, *(row[key] for key in WallContent.__struct_fields__[1:]))
+            for link, row in bill["links"].items()
+        ),
         mass_kg=bill["mass_kg"],
+        governs=tuple(bill["governs"]),
         least_clearance=bill.get("least_clearance"),
     )
 

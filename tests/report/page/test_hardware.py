@@ -94,7 +94,9 @@ def test_the_card_shows_what_the_bill_says(
     text = chromium.value("document.querySelector('[data-wall=l_forearm]').textContent")
     assert text.startswith("l_forearmaluminium 60612")
     assert f"{float(format(forearm['safety_factor'], '.3g')):g}" in text
-    assert text.endswith(forearm["safety_case"])
+    assert text.endswith(f"{forearm['safety_mode']}, {forearm['safety_case']}")
+    text = chromium.value("document.querySelector('[data-mass=total]').closest('table').textContent")
+    assert text.startswith(f"{'. '.join(bill['governs'])}.")
     assert chromium.complaints() == []
 
 

@@ -89,7 +89,7 @@ const wallTable = (hardware) => {
         "td",
         { class: "number" },
         one.safety_factor === null ? "rigid" : figure(one.safety_factor, 3),
-        element("small", { text: one.safety_case ?? "" }),
+        element("small", { text: one.safety_factor === null ? "" : `${one.safety_mode}, ${one.safety_case}` }),
       ),
     ),
   );
@@ -97,7 +97,7 @@ const wallTable = (hardware) => {
     "table",
     { class: "bill" },
     element("caption", {
-      text: "Without actuators. The safety factor is the least of all cases of the lift, against yield and buckling; links that are no beams are taken as rigid.",
+      text: "Without actuators. The safety factor is the least of all cases and load cases, against yield and buckling; links that are no beams are taken as rigid.",
     }),
     headRow([["Link", ""], ["Wall [mm]"], ["Mass [kg]"], ["Safety factor"]]),
     element("tbody", {}, ...body),
@@ -110,6 +110,7 @@ const massSplit = (hardware) =>
   element(
     "table",
     { class: "bill" },
+    element("caption", { text: `${hardware.governs.join(". ")}.` }),
     element(
       "tbody",
       {},
