@@ -178,7 +178,7 @@ def _ended_by_time() -> Iterator[Callable[[float | None], Deadline]]:
     try:
         yield deadline
     except Interrupted:
-        if not (made and made[-1]()):
+        if not (made and made[-1].over):
             raise
 
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import signal
+import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
 from pathlib import Path
+from types import FrameType
 from typing import Protocol
 
 import msgspec
@@ -100,7 +103,7 @@ class Stop(Protocol):
 
 
 class Deadline:
-    """A stop at the end of a session's wall time, and at no other request than Ctrl-C.
+    """A stop at the end of a session's wall time, or after an interrupt.
 
     Args:
         hours: from now on; None for no end.
@@ -109,19 +112,39 @@ class Deadline:
     def __init__(self, hours: float | None) -> None:
         self._hours = hours
         self._end = None if hours is None else time.monotonic() + hours * SECONDS_PER_HOUR
+        self._interrupted = False
 
     def __call__(self) -> bool:
+        """Whether no further evaluation is to begin."""
+        return self._interrupted or self.over
+
+    @property
+    def over(self) -> bool:
         """Whether the time is over."""
         return self._end is not None and time.monotonic() > self._end
 
     @property
     def why(self) -> str:
         """As in `Stop`."""
-        return f"its wall time of {self._hours:g} h is over" if self() else ""
+        return f"its wall time of {self._hours:g} h is over" if self.over else ""
 
-    def heeded(self) -> AbstractContextManager[None]:
-        """Nothing breaks in, so there is nothing to hold off."""
-        return nullcontext()
+    @contextmanager
+    def heeded(self) -> Iterator[None]:
+        """Within this, an interrupt breaks in as ever and is remembered: some libraries drop its error."""
+        usual = signal.getsignal(signal.SIGINT)
+        if not callable(usual) or threading.current_thread() is not threading.main_thread():
+            yield
+            return
+
+        def interrupted(signum: int, frame: FrameType | None) -> None:
+            self._interrupted = True
+            usual(signum, frame)
+
+        signal.signal(signal.SIGINT, interrupted)
+        try:
+            yield
+        finally:
+            signal.signal(signal.SIGINT, usual)
 
 
 def new_directory(name: str) -> Path:

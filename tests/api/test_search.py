@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+import signal
 import subprocess
 import sys
 import tomllib
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -112,6 +114,22 @@ def test_an_interrupt_leaves_a_run_that_can_be_resumed(
     assert 4 <= len(stopped) < BUDGET
     run = evodesign.resume(stopped, jobs=2)
     assert [each.assessment for each in run.designs] == [each.assessment for each in whole[0].designs]
+
+
+def test_an_interrupt_whose_error_a_library_drops_ends_the_search_all_the_same(tmp_path: Path) -> None:
+    usual, heard = signal.getsignal(signal.SIGINT), list[Any]()
+
+    def drops_errors(event: object) -> None:
+        heard.append(event)
+        if len(heard) == 3:
+            with suppress(KeyboardInterrupt):
+                signal.raise_signal(signal.SIGINT)
+
+    place = tmp_path / "run"
+    with pytest.raises(Interrupted, match="evodesign resume"):
+        evodesign.search("point-grasp", place, **SIZES, pool="serial", callback=drops_errors)
+    assert 3 <= len(evodesign.open_run(place)) < BUDGET
+    assert signal.getsignal(signal.SIGINT) is usual
 
 
 @pytest.mark.slow
