@@ -13,7 +13,8 @@ from evodesign.api.design import Design
 from evodesign.api.problem import Problem, open_problem
 from evodesign.api.progress_lines import PrecomputeLines, SearchLines
 from evodesign.api.run import Run, open_run
-from evodesign.api.sessions import Budgets, Deadline, Workers, begin, new_directory, proceed
+from evodesign.api.sessions import Budgets, Workers, begin, new_directory, proceed
+from evodesign.api.stops import Deadline
 from evodesign.errors import InputError, Interrupted
 from evodesign.evaluation.progress import SILENT, PrecomputeProgress
 from evodesign.records import Constraint, Evaluation, Generation, RunHeader

@@ -10,7 +10,8 @@ from evodesign.analysis.people_spread import PeopleSpread, spread_of_run
 from evodesign.api.people import draw_people, usual_designs, usual_reference
 from evodesign.api.run import Run
 from evodesign.api.search import display_of
-from evodesign.api.sessions import Deadline, Stop, Workers
+from evodesign.api.sessions import Workers
+from evodesign.api.stops import Deadline, Stop
 from evodesign.errors import InputError, Interrupted
 from evodesign.pool.registry import make_pool
 from evodesign.problem.build import build_problem

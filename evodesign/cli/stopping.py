@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 
-from evodesign.api.sessions import SECONDS_PER_HOUR
+from evodesign.api.stops import SECONDS_PER_HOUR
 from evodesign.cli.output import show_notes
 from evodesign.interrupts import INTERRUPTS
 

@@ -1,7 +1,7 @@
 """How the torques of a robot that stands alone move with its design.
 
-The statics of `mechanics.stance_case`, over CasADi: with the design's values v in the tree, and offsets d of
-the joints that balance,
+The statics of `mechanics.stance_torques`, over CasADi: with the design's values v in the tree, and offsets
+d of the joints that balance,
 
     0 = L(v, d)        tau = T(v, d)        d tau = (T_v - T_d L_d^-1 L_v) dv
 

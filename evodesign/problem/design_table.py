@@ -229,7 +229,7 @@ class LoadCaseTable(Table, frozen=True):
         hold: a payload in its hands.
         push: a force on it.
         dropped_from_m: height from which the payload of `hold` falls into the hands, or without one the robot
-            onto its feet; links have to bear it. Since 0.3.
+            onto its feet; links must withstand it. Since 0.3.
     """
 
     name: Name

@@ -94,7 +94,7 @@ def _dropped(table: LoadCaseTable, key: str, source: ProblemSource, walls: bool)
         return 0.0
     where = f"{key}.dropped_from_m"
     if not walls:
-        raise InputError(source.path, where, "a [[design.wall]], whose links have to bear the fall", "none")
+        raise InputError(source.path, where, "a [[design.wall]], whose links must withstand the fall", "none")
     if table.push is not None:
         raise InputError(source.path, where, "a fall or a push", "both")
     return table.dropped_from_m

@@ -20,7 +20,8 @@ from evodesign.hardware.actuators import Actuator, ActuatorLaw, actuator_law
 from evodesign.mechanics.added_mass import AddedMasses, joint_slopes
 from evodesign.mechanics.agent import ROBOT, Agent
 from evodesign.mechanics.floating_base import Configuration, FloatingBody
-from evodesign.mechanics.stance_case import StanceCase, StanceTorques, stance_slopes, stance_torques
+from evodesign.mechanics.stance_case import StanceCase, StanceTorques
+from evodesign.mechanics.stance_torques import stance_slopes, stance_torques
 from evodesign.posture.results import CaseSolution
 from evodesign.tree.model import Tree
 

@@ -10,7 +10,8 @@ from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.floating_base import FloatingBody
 from evodesign.mechanics.link_beams import Safety
 from evodesign.mechanics.stance_beams import impact, stance_safety
-from evodesign.mechanics.stance_case import StanceCase, StanceTorques, stance_torques
+from evodesign.mechanics.stance_case import StanceCase, StanceTorques
+from evodesign.mechanics.stance_torques import stance_torques
 from evodesign.tree.equip import actuators_of
 from evodesign.tree.model import Tree
 

@@ -13,7 +13,8 @@ from evodesign.body.inertia import Inertia
 from evodesign.mechanics.added_mass import AddedMasses
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.floating_base import FloatingBody
-from evodesign.mechanics.stance_case import StanceCase, stance_slopes, stance_torques
+from evodesign.mechanics.stance_case import StanceCase
+from evodesign.mechanics.stance_torques import stance_slopes, stance_torques
 from evodesign.problem.build import DesignProblem
 from evodesign.tree.model import Link, Tree
 from evodesign.tree.urdf_write import urdf_text

@@ -10,7 +10,8 @@ import pytest
 
 from evodesign.mechanics.floating_base import FloatingBody
 from evodesign.mechanics.robot_gradient import OF_MASSES, RobotGradient
-from evodesign.mechanics.stance_case import RaisedHand, StanceCase, stance_torques
+from evodesign.mechanics.stance_case import RaisedHand, StanceCase
+from evodesign.mechanics.stance_torques import stance_torques
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source
 from tests.mechanics.test_stance_case import ONE_LEG, SQUAT
