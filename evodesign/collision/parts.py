@@ -7,8 +7,8 @@ keeps clear of
     links                but for the one that holds it and those that a joint joins to that one
 
 and two links that a joint joins stay in touch, or as near to each other as in the robot of the file. An
-actuator touches the link that holds it. What holds one whose middle is in the joint is as thick as it: across the link's length, the housing lies
-within the link's solid,
+actuator touches the link that holds it. What holds one whose middle is in the joint is as thick as it:
+across the link's length, the housing lies within the link's solid,
 
     ball            r >= |(R, h)|
     cylinder        r >= R where both axes are alike, else r >= |(R, h)|
