@@ -6,9 +6,9 @@ keeps clear of
     all other actuators
     links                but for the one that holds it and those that a joint joins to that one
 
-and two links that a joint joins stay in touch, or as near to each other as in the robot of the file. What
-holds an actuator whose middle is in the joint is as thick as it: across the link's length, the housing lies
-within the link's solid,
+and two links that a joint joins stay in touch, or as near to each other as in the robot of the file. An
+actuator touches the link that holds it. What holds one whose middle is in the joint is as thick as it:
+across the link's length, the housing lies within the link's solid,
 
     ball            r >= |(R, h)|
     cylinder        r >= R where both axes are alike, else r >= |(R, h)|
@@ -23,7 +23,7 @@ Source: distances by coal; the support of a cylinder.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import chain, combinations
@@ -95,7 +95,8 @@ def part_clearance(tree: Tree, unscaled: Tree, among: Set[BodyPair] | None = Non
         places = _places(*asked)
     else:
         places = places_of(placed.names, [pair for pair in _kept_apart(*asked) if pair in among])
-    found = [*_thickness(tree, mounted), *_held(placed, unscaled, among), *placed.overlapping(places)]
+    loose = [*_held(placed, unscaled, among), *_loose(placed, tree, mounted, among)]
+    found = [*_thickness(tree, mounted), *loose, *placed.overlapping(places)]
     if among is not None:
         found = [gap for gap in found if (gap.first, gap.second) in among]
     lacking = sum(max(0.0, -gap.distance) for gap in found)
@@ -142,6 +143,21 @@ def _held(placed: PlacedSolids, unscaled: Tree, among: Set[BodyPair] | None) -> 
     for pair, distance in _distances(placed, tuple(before)).items():
         if distance > before[pair] + TOUCH:
             yield BodyDistance(*pair, before[pair] - distance)
+
+
+def _loose(
+    placed: PlacedSolids, tree: Tree, mounted: Iterable[Mounted], among: Set[BodyPair] | None
+) -> Iterator[BodyDistance]:
+    """How far actuators are from the links that hold them, as negative numbers."""
+    pairs = ((part_name(joint), joint.parent) for joint, _, _ in mounted if _has_solids(tree, joint.parent))
+    chosen = tuple(pair for pair in pairs if among is None or pair in among)
+    for pair, distance in _distances(placed, chosen).items():
+        if distance > TOUCH:
+            yield BodyDistance(*pair, -distance)
+
+
+def _has_solids(tree: Tree, link: str) -> bool:
+    return bool(tree.link_by_name[link].solids)
 
 
 @once_per_tree

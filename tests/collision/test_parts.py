@@ -129,6 +129,15 @@ def test_room_is_that_of_another_library_over_all_pairs(geometry: DesignProblem,
             )
             if apart - max(0.0, built) > 1e-6:
                 found[frozenset(pair)] = max(0.0, built) - apart
+    loose = set()
+    for part in (name for name in world.names if name.startswith(PART)):
+        solids = [number for number, name in enumerate(world.names) if name == holders[part]]
+        apart = min(world.distance(world.names.index(part), solid) for solid in solids)
+        if apart > 1e-6:
+            loose.add(part.removeprefix(PART))
+            assert found[frozenset((part, holders[part]))] > 0.0
+            found[frozenset((part, holders[part]))] = -apart
+    assert loose == ({"l_wrist_prosup", "r_wrist_prosup"} if share == 1.0 else set())
     room = part_clearance(tree, geometry.scene.designed_tree)
     assert room is not None
     lacking = -sum(min(0.0, distance) for distance in found.values())

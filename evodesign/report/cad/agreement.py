@@ -1,19 +1,22 @@
 """What the bodies of the CAD files weigh against what the URDF says of the same links.
 
     link      = walls + filling + motors
-    walls     = density times the integrals over the body that is written (mass, centre, inertia)
-    filling   = its mass, spread evenly over what the outer surface encloses
+    walls     = density times the integrals over the body that is written (mass, centre, inertia), with seats
+    filling   = its mass less what seats add to the walls, spread evenly over what the outer surface encloses
     motors    = the mass of each, spread evenly over the ball that the mass model takes for it, or over the
                 cylinder of its housing
 
 Everything is integrated by Open CASCADE over bodies; the URDF has the closed forms of the mass model. With
 balls both are the same model computed twice. With housings they differ in inertia as far as a cylinder
 differs from a ball: by up to a third in a small link with a large motor. What several solids of a link share
-counts twice in both, as such solids stay separate bodies in the files; `shared` says how much it is.
+counts twice in both, as such solids stay separate bodies in the files; `shared` says how much it is. The mass
+model has no seats: bores lighten a link and flanges make it heavier, and its filling makes up for
+both, as far as it lasts.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +24,7 @@ import numpy as np
 from evodesign.body.inertia import Inertia, total
 from evodesign.report.cad import kernel
 from evodesign.report.cad.parts import LinkPart, MotorPart, Parts
+from evodesign.report.cad.seats import SeatedLink
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +34,7 @@ class LinkAgreement:
     Args:
         volume: of the bodies that are written [m^3], of one without walls that of the full shape.
         walls, filling, motors: their masses [kg].
+        seats: by how much bores and flanges change the mass of the walls [kg].
         body: mass, centre and inertia of the bodies that are written, in the link's frame.
         drawn: the same of the whole link, motors as balls.
         housed: likewise, motors as their housings.
@@ -41,6 +46,7 @@ class LinkAgreement:
     walls: float
     filling: float
     motors: float
+    seats: float
     body: Inertia
     drawn: Inertia
     housed: Inertia
@@ -74,20 +80,27 @@ def relative_difference(one: Inertia, other: Inertia) -> float:
     return float(np.linalg.norm(np.array(one.about_center, float) - reference) / np.linalg.norm(reference))
 
 
-def agreement_of(part: LinkPart, motors: tuple[MotorPart, ...]) -> LinkAgreement:
+def agreement_of(
+    part: LinkPart, bodies: Sequence[kernel.Body], motors: tuple[MotorPart, ...]
+) -> LinkAgreement:
     """How a link of the CAD files agrees with the URDF.
 
     Args:
         part: the link.
+        bodies: of its solids, with seats.
         motors: that it holds.
     """
     solids = part.link.solids
-    bodies = [kernel.body_of(solid) for solid in solids]
+    seats = [
+        float(solid.density) * (kernel.volume(body) - kernel.volume(kernel.body_of(solid)))
+        for body, solid in zip(bodies, solids, strict=True)
+    ]
     walls = [kernel.inertia(body, float(each.density)) for body, each in zip(bodies, solids, strict=True)]
+    left = [float(solid.filling) - seat for solid, seat in zip(solids, seats, strict=True)]
     filling = [
-        _spread(kernel.outer_body(solid), float(solid.filling))
-        for solid in solids
-        if float(solid.filling) > 0.0
+        _spread(kernel.outer_body(solid), mass)
+        for solid, mass in zip(solids, left, strict=True)
+        if mass > 0.0
     ]
     balls = [_spread(kernel.outer_body(solid), float(solid.mass)) for solid in part.link.mounted]
     housings = [_spread(kernel.outer_body(motor.solid), float(motor.actuator.mass)) for motor in motors]
@@ -98,6 +111,7 @@ def agreement_of(part: LinkPart, motors: tuple[MotorPart, ...]) -> LinkAgreement
         walls=_mass(walls),
         filling=_mass(filling),
         motors=_mass(housings),
+        seats=sum(seats),
         body=total(walls),
         drawn=total([*walls, *filling, *balls]),
         housed=total([*walls, *filling, *housings]),
@@ -106,9 +120,12 @@ def agreement_of(part: LinkPart, motors: tuple[MotorPart, ...]) -> LinkAgreement
     )
 
 
-def agreements(parts: Parts) -> dict[str, LinkAgreement]:
+def agreements(parts: Parts, seated: Mapping[str, SeatedLink]) -> dict[str, LinkAgreement]:
     """How the links of the CAD files agree with the URDF, by link."""
-    return {part.name: agreement_of(part, parts.motors_of(part.name)) for part in parts.links}
+    return {
+        part.name: agreement_of(part, seated[part.name].bodies, parts.motors_of(part.name))
+        for part in parts.links
+    }
 
 
 def _spread(body: kernel.Body, mass: float) -> Inertia:

@@ -1,17 +1,17 @@
 """Which parts take the same place at joint angles of zero: what a workshop has to cut out, or make room for.
 
-The mass model puts a motor's centre into the joint, and lets the solids of neighbouring links pass through
-each other. The files show both as they are.
+The mass model lets motors pass through the link after their joint, and a motor without a seat through that
+before it, and the solids of neighbouring links through each other. The files show all as they are.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from evodesign.body.placement import Placement
 from evodesign.report.cad import kernel
-from evodesign.report.cad.parts import LinkPart, MotorPart, Parts
+from evodesign.report.cad.parts import Parts
+from evodesign.report.cad.seats import SeatedLink
 
 LEAST_VOLUME = 1e-9
 """Parts that share less [m^3] touch at most."""
@@ -33,20 +33,15 @@ class Clash:
     volume: float
 
 
-def motor_clashes(parts: Parts) -> Iterator[Clash]:
+def motor_clashes(parts: Parts, seated: Mapping[str, SeatedLink]) -> Iterator[Clash]:
     """The motors that cut through bodies of the links on both sides of their joint."""
-    links = {part.name: part for part in parts.links}
     for motor in parts.motors:
         sides = {motor.joint.parent: motor.link_from_motor, motor.joint.child: motor.child_from_motor}
         for name, link_from_motor in sides.items():
-            if name in links:
-                yield from _of_motor(motor, link_from_motor, links[name])
-
-
-def _of_motor(motor: MotorPart, link_from_motor: Placement, part: LinkPart) -> Iterator[Clash]:
-    housing = kernel.placed(kernel.solid_body(motor.solid.shape, None), link_from_motor)
-    bodies = (kernel.body_of(solid) for solid in part.link.solids)
-    yield from _clash(motor.name, part.name, sum(kernel.shared_volume(housing, body) for body in bodies))
+            if name in seated:
+                housing = kernel.placed(kernel.solid_body(motor.solid.shape, None), link_from_motor)
+                shared = (kernel.shared_volume(housing, body) for body in seated[name].bodies)
+                yield from _clash(motor.name, name, sum(shared))
 
 
 def neighbour_clashes(parts: Parts) -> Iterator[Clash]:

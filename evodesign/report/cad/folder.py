@@ -9,8 +9,9 @@ import numpy as np
 from evodesign.report.cad import kernel
 from evodesign.report.cad.agreement import agreements
 from evodesign.report.cad.clashes import motor_clashes, neighbour_clashes
-from evodesign.report.cad.parts import AXIS_LENGTH, LinkPart, Parts, parts_of
+from evodesign.report.cad.parts import AXIS_LENGTH, Parts, parts_of
 from evodesign.report.cad.readme import readme_text
+from evodesign.report.cad.seats import seated_links
 from evodesign.report.cad.sheet import drawing_svg
 from evodesign.tree.mesh_write import stl, triangles_of, vertices_of
 from evodesign.tree.model import Link, Tree
@@ -26,10 +27,12 @@ def cad_files(tree: Tree, materials: Mapping[str, str], title: str, stamp: str) 
         stamp: time that STEP files bear, ISO 8601; equal arguments give equal files.
     """
     parts = parts_of(tree, materials)
+    seated = seated_links(parts)
     files = {}
     products = []
     for part in parts.links:
-        product = _product(part)
+        body = kernel.together(seated[part.name].bodies)
+        product = kernel.Product(part.name, body, part.root_from_link)
         files[f"{part.file}.step"] = kernel.step_file(part.name, [product], stamp)
         files[f"{part.file}.stl"] = _stl(*kernel.triangles(product.body))
         products.append(product)
@@ -39,14 +42,9 @@ def cad_files(tree: Tree, materials: Mapping[str, str], title: str, stamp: str) 
     if products:
         files["assembly.step"] = kernel.step_file(tree.name, products, stamp)
     files["drawing.svg"] = drawing_svg(parts, title)
-    clashes = list(motor_clashes(parts)), list(neighbour_clashes(parts))
-    return {"README.md": readme_text(parts, agreements(parts), *clashes).encode(), **files}
-
-
-def _product(part: LinkPart) -> kernel.Product:
-    """A link as one body, or as several that stay apart where it has several solids."""
-    body = kernel.together([kernel.body_of(solid) for solid in part.link.solids])
-    return kernel.Product(part.name, body, part.root_from_link)
+    clashes = list(motor_clashes(parts, seated)), list(neighbour_clashes(parts))
+    readme = readme_text(parts, agreements(parts, seated), seated, *clashes)
+    return {"README.md": readme.encode(), **files}
 
 
 def _motors_and_axes(parts: Parts) -> Iterator[kernel.Product]:

@@ -11,6 +11,7 @@ from evodesign.report.cad.agreement import LinkAgreement
 from evodesign.report.cad.clashes import Clash
 from evodesign.report.cad.listing import millimetres, section_text, wall_text
 from evodesign.report.cad.parts import LinkPart, Parts
+from evodesign.report.cad.seats import Seat, SeatedLink
 
 FILES = """\
 Lengths are millimetres. The files of a link are in its own frame, that of `../robot.urdf`.
@@ -27,29 +28,39 @@ program, and are no finished parts:
 
 - A hollow link is closed, its wall as thick at the ends as at the sides: it is printed in one piece with an
   opening to drain it, or made of a tube or plates and two ends.
-- Motors have no seats: each is the cylinder of its housing, centred in the joint, and takes the place of
-  the walls that the table of motors names. Bearings, flanges, screws and cables are not drawn.
+- A motor is the cylinder of its housing. Where the problem mounts it (`mount`), the link that holds it has a
+  seat: a bore of the housing's diameter, and a flange, a flat ring across the axis (table of seats). To be
+  added are fits, shoulders and bolt circles, which the catalogue does not have; a cap over what a seat leaves
+  open; the opening through which the motor comes into a closed link; and in the link that the motor moves
+  its room and a hub. Motors without `mount` have no seats. Bearings, screws and cables are not drawn.
 - Links of a joint pass through each other where the mass model lets them (last table): they have to be cut
   back before the joint can move.
 - `filling` is what a hollow link holds beside its wall (cables, boards, covers), spread evenly over it. It
-  has mass and no body.
+  has mass and no body. The mass model has no seats, so what they add to a link's body is taken from its
+  filling, and what bores take is given to it.
 - A density without the name of a material is an effective one: mass over the volume of the shape."""
 
 COMPARED = """\
 Mass, centre and inertia of the whole link (walls, filling and motors), integrated over the bodies of these
 files, against those of `../robot.urdf`, in the link's frame; the inertia is about the centre of mass, its
-difference the norm of the matrix of differences, relative. In the URDF a motor is a ball of its mass; "with
-housings" takes the cylinders that are drawn instead. A posture depends on mass and centre alone."""
+difference the norm of the matrix of differences, relative. In the URDF a motor without `mount` is a ball of
+its mass; "with housings" takes the cylinders that are drawn instead. A posture depends on mass and centre
+alone."""
 
 
 def readme_text(
-    parts: Parts, compared: Mapping[str, LinkAgreement], motors: Sequence[Clash], neighbours: Sequence[Clash]
+    parts: Parts,
+    compared: Mapping[str, LinkAgreement],
+    seated: Mapping[str, SeatedLink],
+    motors: Sequence[Clash],
+    neighbours: Sequence[Clash],
 ) -> str:
     """The README as Markdown.
 
     Args:
         parts: of the robot.
         compared: links with the URDF, by name.
+        seated: links with seats, by name.
         motors: which cut through links.
         neighbours: links that pass through each other.
     """
@@ -61,6 +72,7 @@ def readme_text(
         LIMITS,
         *_bodies(parts, compared),
         *_motors(parts, motors),
+        *_seats(parts, compared, seated),
         *_neighbours(neighbours),
     ]
     return "\n\n".join(sections) + "\n"
@@ -207,6 +219,40 @@ def _motors(parts: Parts, clashes: Sequence[Clash]) -> list[str]:
         for motor in parts.motors
     )
     return ["## Motors", _table(heads, rows)]
+
+
+def _seats(
+    parts: Parts, compared: Mapping[str, LinkAgreement], seated: Mapping[str, SeatedLink]
+) -> list[str]:
+    mounted = [motor for motor in parts.motors if motor.actuator.mounting is not None]
+    if not mounted:
+        return []
+    by_motor = {seat.motor.name: seat for link in seated.values() for seat in link.seats}
+    heads = (
+        *("motor", "held by", "bore [mm]", "flange [mm]", "middle of the flange to that of the housing [mm]"),
+        *("circumference held [%]", "all seats add to the link [kg]"),
+    )
+    rows = (
+        (
+            *(_code(motor.name), _code(motor.joint.parent)),
+            *_seat_cells(by_motor.get(motor.name)),
+            f"{compared[motor.joint.parent].seats:z.4f}" if motor.joint.parent in compared else "-",
+        )
+        for motor in mounted
+    )
+    return ["## Seats", _table(heads, rows)]
+
+
+def _seat_cells(seat: Seat | None) -> tuple[str, ...]:
+    if seat is None:
+        return ("none: the rim is outside of the link", "-", "-", "0")
+    ring = f"Ø{millimetres(2.0 * seat.outside)} x {millimetres(seat.thickness)}"
+    return (
+        f"Ø{millimetres(seat.motor.actuator.size[0])}",
+        ring if seat.thickness > 0.0 else "the link",
+        f"{1000.0 * seat.along:z.1f}",
+        f"{100.0 * seat.held:.0f}",
+    )
 
 
 def _neighbours(clashes: Sequence[Clash]) -> list[str]:

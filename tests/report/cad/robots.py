@@ -14,12 +14,14 @@ from evodesign.tree.model import Tree
 from evodesign.tree.urdf_write import urdf_text
 
 
-def designed(repository: Path, name: str, seed: int) -> tuple[Tree, dict[str, str]]:
-    """The robot of a random design of a problem, with the materials of its links."""
+def designed(
+    repository: Path, name: str, seed: int, sizes: tuple[float, float] = (5.0, 60.0)
+) -> tuple[Tree, dict[str, str]]:
+    """The robot of a random design, with the materials of its links; actuators are of such sizes [N m]."""
     space = (built := build_problem(read_source(repository / "problems" / f"{name}.toml"))).space
     rng = np.random.default_rng(seed)
     values = space.values(tuple(rng.uniform(size=len(space.parameters)).tolist()))
-    rated = {each.name: float(rng.uniform(5.0, 60.0)) for each in space.parameters if each.joints}
+    rated = {each.name: float(rng.uniform(*sizes)) for each in space.parameters if each.joints}
     tree = space.resized(built.scene.designed_tree, space.given(values, rated))
     return tree, link_materials(space, tree)
 
