@@ -12,8 +12,8 @@ JOBS ?= 2
 KILLS ?= 1000
 MINUTES ?= 10
 FOLDER ?=
-# one more at a time than cores: tests wait for a third of their time
-PYTEST := $(BIN)/python -m pytest -n $(shell expr $(JOBS) + 1) --dist worksteal
+# two more at a time than cores: tests wait for a third of their time
+PYTEST := $(BIN)/python -m pytest -n $(shell expr $(JOBS) + 2) --dist worksteal
 QUICK := tests/analysis tests/body tests/conformance/test_searches.py tests/design tests/golden tests/human tests/runlog \
 	tests/searches tests/test_evolve.py tests/tree
 PIP := $(BIN)/python -m pip install --no-compile --quiet --disable-pip-version-check --constraint constraints.txt
