@@ -18,11 +18,16 @@ RESULTS = Path(__file__).parent / "results" / "front_quality.json"
 
 def factors() -> list[float]:
     """Relative growth of a doubling divided by that of the doubling before, of every stored search."""
-    found = []
+    return [after / before for before, after in doublings()]
+
+
+def doublings() -> list[tuple[float, float]]:
+    """Relative growth of two doublings, one after the other, of every stored search."""
+    found = list[tuple[float, float]]()
     for row in json.loads(RESULTS.read_text(encoding="utf-8"))["rows"]:
         shares = [share for _, share in sorted((int(count), share) for count, share in row["shares"].items())]
         growths = [after / before - 1.0 for before, after in pairwise(shares)]
-        found += [after / before for before, after in pairwise(growths)]
+        found += pairwise(growths)
     return found
 
 

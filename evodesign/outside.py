@@ -39,6 +39,7 @@ def imported(name: str, source: str, key: str) -> object:
         raise InputError(source, key, wanted, found)
     try:
         return pkgutil.resolve_name(name)
-    except (ImportError, AttributeError, ValueError) as error:
+    except Exception as error:  # a module of the user's may raise anything while it is imported
         wanted = "MODULE:NAME of something that Python can import"
-        raise InputError(source, key, wanted, f"'{name}' ({error})") from error
+        told = "" if isinstance(error, ImportError | AttributeError) else f"{type(error).__name__}: "
+        raise InputError(source, key, wanted, f"'{name}' ({told}{error})") from error

@@ -8,7 +8,8 @@ done,
 How the growth of one doubling and that of the next relate was measured on 84 searches of one problem by
 ten algorithms, from 120 to at most 1,920 evaluations each (`python -m benchmarks.growth`): the factors are
 the median and the quantiles that eight in ten lie between. It says how much is usually left, and no more: a
-search that is stuck cannot know of designs that it never came near.
+search that is stuck cannot know of designs that it never came near. Of a search that grew by more than any of
+these nothing is known: it has hardly begun.
 """
 
 from __future__ import annotations
@@ -24,6 +25,9 @@ from evodesign.records import Generation
 
 USUAL, LOW, HIGH = 0.79, 0.3, 3.15
 """Growth of a doubling divided by that of the one before: median, and the quantiles 10 % and 90 %."""
+
+MOST = 0.5
+"""Largest growth of a doubling that was followed by another one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +69,7 @@ class HypervolumeGrowth:
 
 
 def growth(generations: Sequence[Generation]) -> HypervolumeGrowth | None:
-    """How far a search is; None while the hypervolume at half of its evaluations is not known.
+    """How far a search is; None while it has hardly begun, or its hypervolume at half of them is not known.
 
     Args:
         generations: of a run, in order; those of a later session alone may do.
@@ -83,4 +87,6 @@ def growth_of(history: Sequence[tuple[int, float | None]]) -> HypervolumeGrowth 
     if before <= 0.0:
         return None
     last = float(volumes[-1]) / before - 1.0
+    if last > MOST:
+        return None
     return HypervolumeGrowth(int(counts[-1]), last, USUAL * last, LOW * last, HIGH * last)

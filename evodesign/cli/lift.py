@@ -8,7 +8,16 @@ from typing import Annotated
 import typer
 
 from evodesign.cli.evaluate import chosen_design
-from evodesign.cli.options import CORES, Jobs, Json, Knots, ProblemPath, ProfileName, SymmetryName
+from evodesign.cli.options import (
+    CORES,
+    NOTHING_SOLVED,
+    Jobs,
+    Json,
+    Knots,
+    ProblemPath,
+    ProfileName,
+    SymmetryName,
+)
 
 
 def lift(
@@ -33,7 +42,10 @@ def lift(
     jobs: Jobs = CORES,
     json: Json = False,
 ) -> None:
-    """A design and a person lift the load: torques over time, energy, power, residuals."""
+    """A design and a person lift the load: torques over time, energy, power, residuals.
+
+    Exit code 5: no lift is solved.
+    """
     from evodesign.cli.output import console, print_json, show_notes, write_text
     from evodesign.cli.progress import precompute_progress
     from evodesign.cli.tables.lift import lift_tables
@@ -56,6 +68,8 @@ def lift(
         write_text(csv, lift_csv(solutions), "--csv")
     if json:
         print_json(lift_json(solutions))
-        return
-    for table in lift_tables(f"{built.name}: {chosen}", solutions):
-        console().print(table)
+    else:
+        for table in lift_tables(f"{built.name}: {chosen}", solutions):
+            console().print(table)
+    if not any(each.solved for each in solutions.values()):
+        raise typer.Exit(NOTHING_SOLVED)

@@ -1,9 +1,9 @@
 """Lifts of any design of a scene: found from its holds at both ends and checked, or told why there is none.
 
-Solves begin at the robot's hold at either end, followed along the lift with the feet in place, beside persons
-whose motions were found once for the problem (`lift_starts`); so a result depends on problem and design
-alone. The cheapest one counts. Holds of several heights joined together do not do for a start: their elbows
-bend in different ways.
+Solves begin at the holds at both ends, followed along the lift with the feet in place, and at the robot's
+beside persons whose motions were found once for the problem (`lift_starts`); so a result depends on problem
+and design alone. The cheapest one counts. Holds of several heights joined together do not do for a start:
+their elbows bend in different ways.
 
 Beyond 300 lines: the steps from holds to a checked lift stand in the order in which they happen.
 """
@@ -111,7 +111,7 @@ class LiftProblem:
             holds: the design's posture at the beginning and at the end.
             robot: the design's, for the check.
             human: the person's.
-            known: starts of the lift; none: its holds.
+            known: starts of the lift beside its holds.
             slowly: whether the same lift is found infinitely slowly, too.
         """
         for name, posture in zip(("beginning", "end"), holds, strict=True):
@@ -121,7 +121,7 @@ class LiftProblem:
         checker = LiftChecker(self._scene, robot, human, Checker(self._scene, robot, human))
         program, mass = self._program(lift.knots), self._scene.payload.mass
         ends, disturbed = [hold.postures for hold in holds], [hold.disturbed for hold in holds]
-        starts = lift_starts(program, lift, ends, design, known or ({},), disturbed)
+        starts = lift_starts(program, lift, ends, design, (*known, {}), disturbed)
         solves = {
             name: LiftSolve(start, *program.solve(lift, start, design, mass))
             for name, start in starts.items()

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from benchmarks.growth import factors
-from evodesign.analysis.growth import HIGH, LOW, USUAL, growth
+from benchmarks.growth import doublings, factors
+from evodesign.analysis.growth import HIGH, LOW, MOST, USUAL, growth
 from evodesign.records import Generation
 
 
@@ -49,6 +49,11 @@ def test_without_half_of_the_evaluations_nothing_is_said(volumes: list[float | N
     assert growth(generations(volumes)) is None
 
 
+def test_of_a_search_that_has_hardly_begun_nothing_is_said() -> None:
+    assert growth(generations([2.0, 2.0, 2.9, 2.9])) is not None
+    assert growth(generations([2.0, 2.0, 3.1, 3.1])) is None
+
+
 def test_a_search_that_stands_still_is_expected_to_go_on_so() -> None:
     found = growth(generations([2.0, 2.0, 2.0, 2.0]))
     assert found is not None
@@ -58,3 +63,4 @@ def test_a_search_that_stands_still_is_expected_to_go_on_so() -> None:
 def test_the_factors_are_those_of_the_stored_searches() -> None:
     measured = np.quantile(factors(), (0.1, 0.5, 0.9))
     assert measured == pytest.approx([LOW, USUAL, HIGH], abs=0.05)
+    assert max(before for before, _ in doublings()) == pytest.approx(MOST, abs=0.05)

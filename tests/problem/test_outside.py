@@ -88,6 +88,19 @@ def test_wrong_places_are_refused_in_one_sentence(problem: DesignProblem, name: 
     assert words in str(refused.value)
 
 
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [("def load(:", "(SyntaxError: invalid syntax"), ("load = nothing", "(NameError: name 'nothing' is not")],
+)
+def test_modules_that_cannot_be_imported_are_refused_in_one_sentence(
+    problem: DesignProblem, tmp_path: Path, text: str, words: str
+) -> None:
+    (tmp_path / "of_mine.py").write_text(text)
+    with pytest.raises(InputError, match="wanted MODULE:NAME of something that Python can import") as refused:
+        asking(problem, "of_mine:load")
+    assert words in str(refused.value)
+
+
 def test_evaluations_with_code_from_outside_are_not_kept(
     problem: DesignProblem, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
