@@ -52,6 +52,7 @@ NOT_RUN = {
     "python -m benchmarks": "measures for minutes or hours; its figures are in docs/benchmarks.md",
     "python -m docs.write_gallery": "searches for a quarter of an hour",
     "python -m docs.write_pushes": "draws a search of minutes",
+    "python -m docs.write_assembly": "draws a design of a search of minutes",
     "python -m docs.write_actuators": "writes the tables that tests/docs/test_actuators_tables.py compares",
     "python -m docs.write_problem_file": "writes tables that tests/docs/test_quantities_table.py compares",
     "python -m docs.write_commands": "writes the tables that tests/cli/test_main.py compares",

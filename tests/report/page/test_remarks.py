@@ -77,6 +77,7 @@ def changed(content: Content) -> Content:
     hardware = HardwareContent(
         actuators=(ActuatorContent(**actuator),),
         walls=(),
+        governs=(),
         mass_kg={"actuators": 1.0, "structure": 0.0, "rest": 1.0, "total": 2.0},
         least_clearance={"parts": ["l_hip_1", "l_hip_2"], "clearance_m": -0.002},
     )
