@@ -23,8 +23,9 @@ from evodesign.quantities.demand import Demand, SizedRobot, demand_of
 from evodesign.quantities.design_result import DesignResult
 from evodesign.records import Status
 
-BOUNDS = (1.0, 300.0)
-"""Smallest and largest rated torque [N m] that an actuator is made for: somewhat beyond the catalogue."""
+BOUNDS = (2.5, 300.0)
+"""Smallest and largest rated torque [N m] that an actuator is made for: the smallest row of the default law,
+and twice its largest, which designs of a front stay far below."""
 
 BEGINNINGS = 3
 """How often the rounds begin."""
