@@ -25,7 +25,7 @@ from evodesign.records import Status
 
 BOUNDS = (2.5, 300.0)
 """Smallest and largest rated torque [N m] that an actuator is made for: the smallest row of the default law,
-and twice its largest, which designs of a front stay far below."""
+and about twice its largest, which designs of the default's front stay far below."""
 
 BEGINNINGS = 3
 """How often the rounds begin."""

@@ -18,7 +18,7 @@ from evodesign.evaluation.gradients import assessed_gradients
 from evodesign.evaluation.sensitivities import Sensitivities
 from evodesign.evaluation.sizing import BOUNDS
 from evodesign.hardware.actuators import actuator_law
-from evodesign.hardware.catalogue import Gear
+from evodesign.hardware.catalogue import Gear, catalogue
 from evodesign.mechanics.agent import ROBOT
 from evodesign.mechanics.stance_case import StanceCase
 from evodesign.posture.precompute.precomputed import Precomputed
@@ -226,3 +226,7 @@ def test_with_a_fixed_margin_the_others_have_the_same_gradients_and_it_has_none(
     moved = Sensitivities(fixed, inner=inner.inner).at(DESIGN, result).sensitivities()["mass"].gradient
     assert moved is not None
     assert set(moved) == {each.name for each in fixed.space.records}
+
+
+def test_no_actuator_is_sized_below_the_rows_of_the_law() -> None:
+    assert BOUNDS[0] == min(row.rated_torque_n_m for row in catalogue().values() if row.in_default_law)
