@@ -10,6 +10,7 @@ from dataclasses import replace
 import moocore
 import numpy as np
 import pytest
+from scipy.optimize import minimize
 
 from evodesign.records import SearchSettings
 from evodesign.searches.base import ObjectivePart, Outcome
@@ -304,6 +305,36 @@ def test_ends_are_found_that_lie_beyond_the_reference_of_the_first_designs():
     ]
     assert least[0] < 0.02, "no genome has less than 0"
     assert least[1] > 0.15, "where a reference is given, 0.5 - ln(30) / 12 = 0.22 is the end"
+
+
+def test_ends_are_found_of_what_is_no_worse_than_the_first_start():
+    """The least value of each bowl where no other is above the start's, by another method."""
+    centres = np.random.default_rng(4).random((4, 6))
+    middle = centres.mean(axis=0)
+    start = tuple(np.clip(middle + 0.22 * np.array([1, 1, 1, -1, 1, 1]), 0.0, 1.0).tolist())
+
+    def bowls(genome):
+        away = np.array(genome) - centres
+        return Outcome(tuple((away**2).sum(axis=1)), 0.0, gradients=tuple(map(tuple, 2.0 * away)))
+
+    def short(starts):
+        """The share of what may be gained that a search missed, of each bowl."""
+        search = make_search(settings(objectives=4, start=starts, seed=2))
+        found = np.array(searched(search, 16, bowls))
+        return (found[(found <= values).all(axis=1)].min(axis=0) - least) / (values - least)
+
+    values = np.array(bowls(start).objectives)
+    limit = {"type": "ineq", "fun": lambda point: values - ((point - centres) ** 2).sum(axis=1)}
+    least = np.array(
+        [
+            minimize(
+                lambda p, c=c: ((p - c) ** 2).sum(), middle, bounds=[(0, 1)] * 6, constraints=[limit]
+            ).fun
+            for c in centres
+        ]
+    )
+    assert short((start, (0.5,) * 6)).max() < 0.2
+    assert short(((0.5,) * 6, start)).max() > 0.4, "where another start comes first, nobody asked for it"
 
 
 def test_a_model_of_many_designs_is_made_of_a_thousand():

@@ -63,6 +63,7 @@ class Knowledge:
         self._within: list[list[int]] = []
         self._violated = False
         self._front: tuple[int, Array, Array] | None = None
+        self._first: Array | None = None
         self._parts: tuple[int, ...] = ()
         self._model, self._violations, self._failures = (_Maintained(self._discrete) for _ in range(3))
         self._margins: list[_Maintained] = []
@@ -83,6 +84,8 @@ class Knowledge:
                 self._parts = tuple(map(len, outcome.parts)) or (0,) * len(values)
             self._feasible.append(len(self))
             self._objectives.append(values)
+            if genome in self._settings.start[:1]:
+                self._first = np.array(values)
         self._genomes.append(genome)
         self._outcomes.append(outcome)
 
@@ -99,6 +102,11 @@ class Knowledge:
     def points(self) -> Array:
         """Every genome told [designs x dimension]."""
         return self._genomes.array
+
+    @property
+    def first_start(self) -> Array | None:
+        """Objectives of the first start genome: the robot as it is; None where it is not feasible."""
+        return self._first
 
     def front(self) -> tuple[Array, Array]:
         """Points and objectives of the feasible designs that no other dominates."""

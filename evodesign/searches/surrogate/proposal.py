@@ -2,10 +2,11 @@
 
 Half of a batch comes from Thompson samples of the global model, four from each, the other half from its
 mean with the local residual: the first explore, the second refine. Each part is the best of a small
-evolution (`evolution`) that starts from the front, chosen by hypervolume (`selection`). One that refines
-seeks an end of the front, the objectives by turns: beyond a reference point that nobody gave an end adds no
-hypervolume, and is on the front all the same. Designs on their way count as if they were what the model
-expects. A genome that is known already is moved a little.
+evolution (`evolution`) that starts from the front, chosen by hypervolume (`selection`). Two that refine seek
+an end, the objectives by turns: one that of the front, as beyond a reference point that nobody gave an end
+adds no hypervolume and is on the front all the same; one that of the designs that are nowhere worse than the
+first start, the robot as it is. Designs on their way count as if they were what the model expects. A genome
+that is known already is moved a little.
 """
 
 from __future__ import annotations
@@ -73,8 +74,13 @@ def proposals(
     for first in range(0, drawn, OF_ONE_SAMPLE):
         generations = FIRST_GENERATIONS if first == 0 else GENERATIONS
         batch.take(model.drawn(generator), min(OF_ONE_SAMPLE, drawn - first), generations)
-    if settings.objectives > 1 and count - drawn > 1:
-        batch.take_end(expected, len(knowledge) // count % settings.objectives)
+    if settings.objectives > 1:
+        turn = len(knowledge) // count % settings.objectives
+        if count - batch.size > 1:
+            batch.take_end(expected, turn)
+        start = knowledge.first_start
+        if start is not None and count - batch.size > 1:
+            batch.take_end(expected, turn, no_worse_than=start)
     batch.take(expected, count - batch.size, GENERATIONS if drawn else FIRST_GENERATIONS)
     return batch.genomes(knowledge.points)
 
@@ -97,7 +103,8 @@ class _Batch:
             self._ideal = values.min(axis=0)
             self._range = np.maximum(reference - self._ideal, LEAST * np.maximum(np.abs(reference), 1.0))
         order = generator.permutation(len(points))
-        self._ends, self._front = points[order], self._scaled(values)[order][: FRONT.get(settings.objectives)]
+        self._ends, self._known = points[order], self._scaled(values)[order]
+        self._front = self._known[: FRONT.get(settings.objectives)]
         self._population = np.empty((0, settings.dimension))
         self._found: list[Array] = []
 
@@ -124,28 +131,39 @@ class _Batch:
         for place in chosen(members, self._front, count, self._generator):
             self._add(members.points[place], members.objectives[place])
 
-    def take_end(self, function: Function, objective: int) -> None:
+    def take_end(self, function: Function, objective: int, no_worse_than: Array | None = None) -> None:
         """Add the best in one objective, if it is expected to be better than all that is known.
 
         What lies beyond a reference that was given counts as infeasible.
+
+        Args:
+            function: the objectives that are expected.
+            objective: its place.
+            no_worse_than: values that no objective may exceed; None for the end of the whole front.
         """
         judged = self._judged(function)
         given = [value is not None for value in self._settings.reference_values]
+        limits = np.where(given, 1.0, np.inf)
+        if no_worse_than is not None:
+            limits = np.minimum(limits, self._scaled(no_worse_than))
 
         def one(points: Array) -> tuple[Array, Array]:
             objectives, infeasibility = judged(points)
-            beyond = np.maximum(objectives[:, given] - 1.0, 0.0).sum(axis=1)
-            return objectives[:, [objective]], infeasibility + beyond
+            return objectives[:, [objective]], infeasibility + _beyond(objectives, limits)
 
-        members = self._evolved(one, GENERATIONS)
+        within = _beyond(self._known, limits) == 0.0
+        least = self._known[within, objective].min(initial=min(limits[objective], 1.0))
+        members = self._evolved(one, GENERATIONS, first=within)
         best = np.lexsort((members.objectives[:, 0], members.infeasibility))[0]
-        if members.infeasibility[best] == 0.0 and members.objectives[best, 0] < -FURTHER:
+        if members.infeasibility[best] == 0.0 and members.objectives[best, 0] < least - FURTHER:
             self._add(members.points[best], judged(members.points[[best]])[0][0])
 
-    def _evolved(self, judged: Judged, generations: int) -> Members:
+    def _evolved(self, judged: Judged, generations: int, first: NDArray[np.bool_] | None = None) -> Members:
+        """An evolution that starts from the front, from some of it before others."""
         counts, generator = self._settings.counts, self._generator
         anywhere = snapped(generator.random((ANYWHERE, self._settings.dimension)), counts)
-        start = np.vstack([self._ends[:MEMBERS], self._population, anywhere])
+        known = self._ends if first is None else np.vstack([self._ends[first], self._ends[~first]])
+        start = np.vstack([known[:MEMBERS], self._population, anywhere])
         return evolved(judged, start, generations, counts, generator)
 
     def _add(self, point: Array, objectives: Array) -> None:
@@ -182,6 +200,11 @@ class _Batch:
             changed = discrete & (generator.random(len(point)) < attempt / TRIES)
             moved = snapped(np.clip(np.where(changed, anew, point + step), 0.0, 1.0)[None], counts)[0]
         return moved
+
+
+def _beyond(objectives: Array, limits: Array) -> Array:
+    """By how much objectives exceed limits, summed."""
+    return np.asarray(np.maximum(objectives - limits, 0.0).sum(axis=1))
 
 
 def _without(members: Members, found: Sequence[Array]) -> Members:
