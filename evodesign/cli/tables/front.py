@@ -9,6 +9,7 @@ from typing import Any
 from evodesign.analysis.active_limits import frequent_limits, limits_json
 from evodesign.analysis.choice import Choice, Chosen, Order
 from evodesign.analysis.failures import causes, failures
+from evodesign.analysis.gains import gains, gains_json
 from evodesign.analysis.people_spread import PeopleSpread, spread_json, spread_sentence
 from evodesign.cli.output import printable
 from evodesign.cli.tables.table import FittedTable, designs_table
@@ -39,6 +40,7 @@ def front_json(
         "order": choice.order,
         "where": [str(condition) for condition in choice.where],
         "limits": limits_json(frequent_limits(run)),
+        "gains": gains_json(gains(run)),
         **({"spread": people} if people else {}),
         "statuses": Counter(str(evaluation.assessment.status) for evaluation in run.evaluations),
         "designs": [
@@ -127,8 +129,10 @@ def front_lines(
     feasible = sum(evaluation.feasible for evaluation in run.evaluations)
     counts = failures(run.evaluations)
     failed = f", failed: {causes(counts)}" if counts else ""
+    gained = gains(run)
     return [
         *_remarks(run, choice, chosen, rows),
+        *([] if gained is None else [gained.sentence]),
         *([] if spread is None else [spread_sentence(spread)]),
         f"{len(run.evaluations)} evaluations, {feasible} feasible, {len(chosen.front)} on the front"
         f"{_such(choice)}{failed}; the run lies in {run.directory}",

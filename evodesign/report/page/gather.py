@@ -15,6 +15,7 @@ from evodesign.analysis.active_limits import frequent_limits
 from evodesign.analysis.failures import causes_of_infeasibility
 from evodesign.analysis.families import families, families_json
 from evodesign.analysis.front import front
+from evodesign.analysis.gains import gains
 from evodesign.analysis.growth import growth
 from evodesign.analysis.importance import Importance, importance, slices
 from evodesign.analysis.importance_json import importance_json
@@ -84,6 +85,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
     known = growth(run.generations)
     sampled, strange = read_sampled(run)
     spread = spread_of_run(run, sampled)
+    gained = gains(run)
     cases = dict.fromkeys(outcome.case for each in run.evaluations for outcome in each.assessment.cases)
     tasks = tuple(dict.fromkeys(case.task for case in cases)) if problem is None else problem.tasks
     return Content(
@@ -117,6 +119,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
         notes=(
             *run.notes,
             *notes,
+            *(() if gained is None else (gained.sentence,)),
             *_unscaled_note(run, problem, marked),
             *(() if problem is None else assumed_heights(problem)),
             *_thinned_note(run, shown),
