@@ -235,12 +235,25 @@ def _explained(error: msgspec.ValidationError, raw: Any, source: str, table: typ
         where = f"{key}.{missing.group(1)}" if key else missing.group(1)
         return InputError(source, where, "this key", "nothing")
     wanted = re.sub(r", got .*", "", message.removeprefix("Expected ")).replace("`", "")
-    wanted = wanted.replace("str of length", "text of length")
+    wanted = re.sub(r"\b(null|float|int|str|bool|object|array)\b", lambda word: WORDS[word[0]], wanted)
+    wanted = wanted.removesuffix(" | ").replace(" | ", " or ")
     if wanted.startswith("Invalid enum value"):
         words = _words_at(table, key)
         known = f"one of {', '.join(words)}" if words else "another word than"
         wanted = known if words else wanted.replace("Invalid enum value", known)
     return InputError(source, key, wanted, shortened(repr(_at(raw, key))))
+
+
+WORDS = {
+    "float": "a number",
+    "int": "a whole number",
+    "str": "text",
+    "bool": "true or false",
+    "object": "a table",
+    "array": "a list",
+    "null": "",
+}
+"""What the library calls in the words of programmers; a key is left out where its value may be null."""
 
 
 def _words_at(table: type[msgspec.Struct], key: str) -> list[str]:

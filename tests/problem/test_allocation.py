@@ -46,8 +46,8 @@ def shared(problem: DesignProblem) -> DesignProblem:
     ("grasp", "task", "allocations", "words"),
     [
         (RIGID, "robot_share = 0.5", SHARE, "task.robot_share: wanted either a fixed value or an allocation"),
-        (RIGID, "robot_share = 1.2", "", "task.robot_share: wanted float <= 1.0, found 1.2"),
-        (RIGID, "robot_share = -0.1", "", "task.robot_share: wanted float >= 0.0, found -0.1"),
+        (RIGID, "robot_share = 1.2", "", "task.robot_share: wanted a number <= 1.0, found 1.2"),
+        (RIGID, "robot_share = -0.1", "", "task.robot_share: wanted a number >= 0.0, found -0.1"),
         (
             RIGID,
             "",
@@ -99,7 +99,7 @@ def shared(problem: DesignProblem) -> DesignProblem:
             "design.allocation[0].lower: wanted a share from 0.418451 to 0.58",
         ),
         (RIGID.replace("rigid", "point"), "", "", "payload.hand_moment_n_m: wanted grasp = 'rigid' with it"),
-        (RIGID.replace("7", "-7"), "", "", "payload.hand_moment_n_m: wanted float >= 0.0, found -7.0"),
+        (RIGID.replace("7", "-7"), "", "", "payload.hand_moment_n_m: wanted a number >= 0.0, found -7.0"),
         (
             'grasp = "point"\nrobot_grasps_m = { left = [0.25, 0.2, 0.0], right = [0.25, -0.2, 0.0] }',
             "robot_share = 0.5",

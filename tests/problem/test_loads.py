@@ -84,7 +84,7 @@ def test_efforts_may_count_on_average(problem: DesignProblem) -> None:
 @pytest.mark.parametrize(
     ("table", "words"),
     [
-        ("load_mass_share = -1.0", r"disturbance\[0\].load_mass_share: wanted float > -1"),
+        ("load_mass_share = -1.0", r"disturbance\[0\].load_mass_share: wanted a number > -1"),
         ("load_mass_share = nan", r"disturbance\[0\].load_mass_share: wanted a finite number"),
         ("center_of_mass_m = [0.3, 0.0, 0.0]", r"center_of_mass_m\[0\]: wanted a shift that leaves"),
         ("push_n = [20.0, 0.0]", r"disturbance\[0\].push_n: wanted"),

@@ -136,7 +136,7 @@ def test_a_spread_changes_no_evaluation() -> None:
             "human[0].spread: wanted either how many people to draw, or spread left out: this one is drawn "
             "already, found both, and posture_sample = 1",
         ),
-        (lambda: source(spread=1), "human[0].spread: wanted int >= 2, found 1"),
+        (lambda: source(spread=1), "human[0].spread: wanted a whole number >= 2, found 1"),
     ],
 )
 def test_a_spread_of_what_has_none_is_refused_in_a_sentence(

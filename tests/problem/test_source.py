@@ -19,10 +19,10 @@ from evodesign.problem.source import decode_toml, read_source
 @pytest.mark.parametrize(
     ("text", "key", "wanted", "found"),
     [
-        ("name = 3", "name", "str", "3"),
+        ("name = 3", "name", "text", "3"),
         ("nam = 'a'", "nam", "one of the keys name, design", "'nam'; did you mean 'name'?"),
         ("name = 'a'", "design", "this key", "nothing"),
-        ("name = 'a'\ndesign = []", "design", "array of length >= 1", "[]"),
+        ("name = 'a'\ndesign = []", "design", "a list of length >= 1", "[]"),
         ("name = 'a'\n[[design]]\nname = 'b'\nlength = {arm = -1}", "design[0].length.arm", "> 0", "-1"),
         ("name = 'a'\n[[design]]\nname = 'b'\nlength = {arm = inf}", "design[0].length.arm", "finite", "inf"),
         ("name = 'a'\n[[design]]\nname = 'b'\nlenght = {}", "design[0].lenght", "keys name", "'length'?"),
