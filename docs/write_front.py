@@ -1,7 +1,8 @@
-"""Draws docs/pictures/front.png, the picture of the README: `python -m docs.write_front RUN`.
+"""Draws the pictures of a run's page, of README and docs/page.md: `python -m docs.write_front RUN`.
 
-RUN is a search of the default problem. The picture is the front of its page, with the robots of some marked
-designs beside it. Chromium is needed.
+RUN is a search of the default problem. `front.png` is the front of its page, with the robots of some marked
+designs beside it, `report_front.png` the page's upper part, `report_brush.png` a choice of designs in the
+dark. Chromium is needed.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from urllib.parse import quote
 
 from PIL import Image
 
@@ -49,6 +51,21 @@ def draw(tab: Tab) -> Image.Image:
     return whole
 
 
+WINDOW = 1440, 860
+KEPT = "keep=0 38 robot_torque&keep=1.6 3 shared_reach_height"
+"""The brushes of the picture, as a link to the page has them."""
+
+
+def scrolled(tab: Tab, to: str) -> Image.Image:
+    """What a window shows with a section at its top."""
+    width, height = WINDOW
+    tab.call(
+        "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False
+    )
+    tab.value(f"document.getElementById('{to}').closest('section').scrollIntoView()")
+    return part_of(tab, (0, 0, width, height))
+
+
 def main(run: Path) -> None:
     """Write the page of a run, and what it shows."""
     with TemporaryDirectory() as name, browser(Path(name) / "profile") as tab:
@@ -57,6 +74,12 @@ def main(run: Path) -> None:
         open_page(tab, page)
         choose(tab, MARKS[0])
         write(draw(tab), "front.png")
+        open_page(tab, page)
+        choose(tab, MARKS[1])
+        write(scrolled(tab, "front-title"), "report_front.png")
+        tab.open(f"{page.as_uri()}#{quote(KEPT, safe='=&')}", theme="dark")
+        tab.wait_for("window.evodesign !== undefined")
+        write(scrolled(tab, "parallel-title"), "report_brush.png", 200_000)  # hundreds of lines
 
 
 if __name__ == "__main__":
