@@ -240,7 +240,13 @@ def test_links_are_as_far_apart_as_in_the_world(apart: DesignProblem) -> None:
             ([(one, other) for one in shapes[0] for other in seconds], there),
         ):
             found += [one.apart_along(other, direction) for one, other in pairs]
-    assert any(meeting.mirrored for meeting in directed(form))
+    labels = [meeting.label(form).split(" and ") for meeting in directed(form) if meeting.mirrored]
+    assert labels
+    for first, twin in labels:
+        assert {first, twin} <= set(human.tree.link_by_name)
+        assert twin not in {meeting.first for meeting in directed(form)}, (
+            "a mirror image is a link of the other side"
+        )
     apart_by = ca.Function("apart", [program.symbols, program.given], [ca.horzcat(*here, *there)])
     rng = np.random.default_rng(6)
     for _ in range(5):

@@ -89,10 +89,10 @@ class Meeting:
     second: str
     mirrored: bool = False
 
-    @property
-    def label(self) -> str:
-        """Both names."""
-        return f"{self.first} and {'the other ' if self.mirrored else ''}{self.second}"
+    def label(self, form: Form) -> str:
+        """The names of both bodies, a mirror image by its own."""
+        twins = form.mirror.links if form.mirror and self.mirrored else {}
+        return f"{self.first} and {twins.get(self.second, self.second)}"
 
 
 def meetings(form: Form) -> tuple[Meeting, ...]:
@@ -224,18 +224,22 @@ def rows(body: Body) -> Iterator[Row]:
             for away in _sides(body, meeting.second):
                 for shape in _placed(body, meeting.first):
                     found[MeetingKind.PLANE].append(
-                        (meeting.label, -ca.dot(away, shape.centre) - shape.support(away), rules.margin)
+                        (
+                            meeting.label(body.form),
+                            -ca.dot(away, shape.centre) - shape.support(away),
+                            rules.margin,
+                        )
                     )
         elif meeting.kind is MeetingKind.MIDDLE:
             for shape in _placed(body, meeting.first):
                 apart = 2.0 * (shape.centre[1] - shape.support(left)) + spare
-                found[MeetingKind.MIDDLE].append((meeting.label, apart, margin))
+                found[MeetingKind.MIDDLE].append((meeting.label(body.form), apart, margin))
         elif PARTING in body.values:
             place = NUMBERS * parted.index(meeting)
             numbers, pairs = body.values[PARTING][place : place + NUMBERS], placed_pairs(body, meeting)
             for one, other in pairs:
                 apart = one.apart_along(other, numbers) + OFF * (1.0 - numbers[0]) + spare - numbers[7]
-                found[MeetingKind.DIRECTION].append((meeting.label, apart, margin))
+                found[MeetingKind.DIRECTION].append((meeting.label(body.form), apart, margin))
     for kind, name, share in (
         (MeetingKind.MIDDLE, "clear_of_mirror_image", 1.0),
         (MeetingKind.PLANE, "clear_of_plane", 0.5),
