@@ -66,7 +66,7 @@ class Points(Part, frozen=True):
 
 
 class Mark(Part, frozen=True):
-    """A marked design; `kind` is `unscaled`, `best`, `knee`, `asked` or `near`."""
+    """A marked design; `kind` is `unscaled`, `best`, `gain`, `knee`, `asked` or `near`."""
 
     number: int
     kind: str

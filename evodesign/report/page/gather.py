@@ -15,7 +15,7 @@ from evodesign.analysis.active_limits import frequent_limits
 from evodesign.analysis.failures import causes_of_infeasibility
 from evodesign.analysis.families import families, families_json
 from evodesign.analysis.front import front
-from evodesign.analysis.gains import gains
+from evodesign.analysis.gains import Gains, gains
 from evodesign.analysis.growth import growth
 from evodesign.analysis.importance import Importance, importance, slices
 from evodesign.analysis.importance_json import importance_json
@@ -73,7 +73,8 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
     problem, notes = _problem(run)
     best = front(run.header.objectives, run.evaluations)
     on_front = {evaluation.number for evaluation in best}
-    marked = _marks(run, problem, best, asked)
+    gained = gains(run)
+    marked = _marks(run, problem, best, gained, asked)
     kinds = families(run.header, run.evaluations)
     needed = {mark.number for mark in marked}
     elites = {kind.elite.number for kind in kinds.kinds}
@@ -85,7 +86,6 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
     known = growth(run.generations)
     sampled, strange = read_sampled(run)
     spread = spread_of_run(run, sampled)
-    gained = gains(run)
     cases = dict.fromkeys(outcome.case for each in run.evaluations for outcome in each.assessment.cases)
     tasks = tuple(dict.fromkeys(case.task for case in cases)) if problem is None else problem.tasks
     return Content(
@@ -147,12 +147,16 @@ def _problem(run: RunLog) -> tuple[DesignProblem | None, tuple[str, ...]]:
 
 
 def _marks(
-    run: RunLog, problem: DesignProblem | None, best: Sequence[Evaluation], asked: Collection[int]
+    run: RunLog,
+    problem: DesignProblem | None,
+    best: Sequence[Evaluation],
+    gained: Gains | None,
+    asked: Collection[int],
 ) -> tuple[Mark, ...]:
     first = () if problem is None else marks.unscaled(problem, run.evaluations)
     named = marks.asked(asked, run.evaluations)
     near = () if best else marks.nearest_to_feasible(run.evaluations)
-    return (*first, *named, *marks.chosen(run.header.objectives, best), *near)
+    return (*first, *named, *marks.chosen(run.header.objectives, best), *marks.gained(gained), *near)
 
 
 def _unscaled_note(run: RunLog, problem: DesignProblem | None, marked: Sequence[Mark]) -> tuple[str, ...]:

@@ -1,6 +1,7 @@
 """Designs of a page: which evaluations it holds, and which of them it marks.
 
-Marked are the unscaled robot, the best of each objective, knees, and what the user asks for.
+Marked are the unscaled robot, the best of each objective, of all and of those that are nowhere worse than it,
+knees, and what the user asks for.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from collections.abc import Collection, Sequence
 
 from evodesign.analysis.decision_making import knees
 from evodesign.analysis.front import to_minimise
+from evodesign.analysis.gains import Gains
 from evodesign.errors import InputError
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.designs import alike
@@ -47,8 +49,21 @@ def chosen(objectives: Sequence[Objective], front: Sequence[Evaluation]) -> tupl
 
 def _best(objective: Objective, front: Sequence[Evaluation]) -> Mark:
     least = min(front, key=lambda e: to_minimise(objective, e.assessment.objectives[objective.name]))
+    return Mark(number=least.number, kind="best", label=_extreme(objective))
+
+
+def _extreme(objective: Objective) -> str:
     word = "least" if objective.sense is Sense.MINIMISE else "greatest"
-    return Mark(number=least.number, kind="best", label=f"{word} {objective.name.replace('_', ' ')}")
+    return f"{word} {objective.name.replace('_', ' ')}"
+
+
+def gained(found: Gains | None) -> tuple[Mark, ...]:
+    """The best of each objective among the designs that are nowhere worse than the start design."""
+    best = () if found is None else found.best
+    return tuple(
+        Mark(number=gain.number, kind="gain", label=f"{_extreme(gain.objective)} without loss")
+        for gain in best
+    )
 
 
 def asked(numbers: Collection[int], evaluations: Sequence[Evaluation]) -> tuple[Mark, ...]:

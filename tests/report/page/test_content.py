@@ -12,6 +12,7 @@ import pytest
 
 from evodesign.analysis.active_limits import frequent_limits
 from evodesign.analysis.front import front
+from evodesign.analysis.gains import gains
 from evodesign.errors import InputError
 from evodesign.evaluation.clearance import Clearances
 from evodesign.problem.build import DesignProblem
@@ -116,6 +117,16 @@ def test_unscaled_robot_and_the_best_of_each_objective_are_marked(real_run: RunL
     greatest = max(objectives.values(), key=lambda values: values["reach_height"])
     assert objectives[marks["greatest reach height"]] == greatest
     assert "knee" in marks
+    signs = {each.name: -1.0 if each.sense is Sense.MAXIMISE else 1.0 for each in real_run.header.objectives}
+    before = real_run.evaluations[0].assessment.objectives
+    no_worse = [
+        values
+        for values in objectives.values()
+        if all(sign * values[name] <= sign * before[name] for name, sign in signs.items())
+    ]
+    assert objectives[marks["least robot torque without loss"]] == min(
+        no_worse, key=lambda values: values["robot_torque"]
+    )
 
 
 @pytest.mark.slow
@@ -135,12 +146,14 @@ def test_what_is_left_out_is_said(
 ) -> None:
     monkeypatch.setattr(postures, "MOST_NUMBERS", 1)
     bare = page_content(real_run)
-    monkeypatch.setattr(gather, "MOST_POINTS", 6)
+    monkeypatch.setattr(gather, "MOST_POINTS", 9)
     small = page_content(real_run)
     frequent = tuple(each.sentence for each in frequent_limits(real_run))
-    assert content.notes == (*frequent, *left_out(real_run.header.problem))
+    gained = gains(real_run)
+    assert gained is not None
+    assert content.notes == (gained.sentence, *frequent, *left_out(real_run.header.problem))
     assert any(note.startswith("no [collisions]") for note in content.notes)
-    assert any(note.startswith("6 of 12 evaluations") for note in small.notes)
+    assert any(note.startswith("9 of 12 evaluations") for note in small.notes)
     assert any("postures of" in note for note in bare.notes)
     assert small.facts == content.facts, "the run's own figures count everything"
 

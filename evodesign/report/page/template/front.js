@@ -85,12 +85,12 @@ const colourScale = (axis) => {
   };
 };
 
-const MARK_TRACES = ["knee", "best", "asked", "unscaled"];
+const MARK_TRACES = ["knee", "best", "gain", "asked", "unscaled"];
 
 const markTraces = () => {
   const shapes = drawnIn.solid
-    ? { unscaled: "cross", best: "diamond", knee: "square", asked: "circle" }
-    : { unscaled: "star", best: "diamond-open", knee: "square-open", asked: "triangle-up-open" };
+    ? { unscaled: "cross", best: "diamond", gain: "diamond", knee: "square", asked: "circle" }
+    : { unscaled: "star", best: "diamond-open", gain: "cross-open", knee: "square-open", asked: "triangle-up-open" };
   return MARK_TRACES.flatMap((kind) => {
     const marked = content.marks.filter((mark) => mark.kind === kind).map((mark) => rowOf.get(mark.number));
     const drawn = marked.filter(complete);

@@ -79,7 +79,7 @@ const hasFront = frontRows.length > 0;
 
 const marksOf = (number) => content.marks.filter((mark) => mark.number === number);
 const unscaledMark = content.marks.find((mark) => mark.kind === "unscaled");
-const symbolOf = { unscaled: "★", best: "◆", knee: "■", asked: "▲", near: "●" };
+const symbolOf = { unscaled: "★", best: "◆", gain: "✚", knee: "■", asked: "▲", near: "●" };
 
 // The constraint on a quantity, if it has one, and whether a value is beyond its bounds.
 const constraintOn = (name) => constraints.find((one) => one.name === name);
