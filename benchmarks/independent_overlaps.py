@@ -34,9 +34,9 @@ import numpy as np
 import pinocchio as pin
 
 from evodesign.analysis.front import front
+from evodesign.mechanics.agent import ROBOT, Agent
 from evodesign.records import CaseDetail
 from evodesign.report.opened_design import RebuiltProblem
-from evodesign.report.scene_models import SceneSet
 from evodesign.runlog.run import read_run
 from evodesign.tree.mesh_write import mesh_files
 from evodesign.tree.urdf_write import urdf_text
@@ -243,19 +243,16 @@ class Judge:
         self.log = read_run(run)
         self.problem = RebuiltProblem(self.log.header).problem
         self.folder = folder
-        scenes = self.problem.scenes
-        robot = scenes[0].robot
-        names, meshes = mesh_files(robot.tree, "meshes")
-        self._write(meshes)
-        unscaled = Body(urdf_text(robot.tree, names), folder)
-        self.exempt = {"robot": unscaled.exempt(robot.joints, unscaled.limits(robot.joints))}
-        self.people = {}
-        for scene in scenes:
-            person = scene.human
-            if person.label not in self.people:
-                body = Body(urdf_text(person.tree), folder)
-                self.people[person.label] = body
-                self.exempt[person.label] = body.exempt(person.joints, body.limits(person.joints))
+        self.built: dict[str, Body] = {}
+        self.exempt: dict[str, Collection[Pair]] = {}
+        for agent in (agent for scene in self.problem.scenes for agent in scene.agents):
+            label = _label(agent)
+            if label not in self.exempt:
+                names, meshes = mesh_files(agent.tree, "meshes")
+                self._write(meshes)
+                self.built[label] = Body(urdf_text(agent.tree, names), folder)
+                limits = self.built[label].limits(agent.joints)
+                self.exempt[label] = self.built[label].exempt(agent.joints, limits)
 
     def _write(self, files: Mapping[str, bytes]) -> None:
         for name, content in files.items():
@@ -271,9 +268,7 @@ class Judge:
             values = space.given(
                 [assessment.design[p.name] for p in space.parameters], assessment.rated_torques
             )
-            tree = SceneSet.of(
-                self.problem.scenes, space.resized(self.problem.scene.robot.tree, values)
-            ).robot
+            tree = space.resized(self.problem.scene.designed_tree, values)
             names, meshes = mesh_files(tree, "meshes")
             self._write(meshes)
             yield evaluation.number, Body(urdf_text(tree, names), self.folder), logged[evaluation.number]
@@ -281,27 +276,30 @@ class Judge:
     def deep(self, robot: Body, case: CaseDetail) -> dict[Pair, float]:
         """Overlaps in a posture, by names."""
         scene = self.problem.scene_of(case.case)
-        person = self.people[scene.human.label]
-        placed = {}
-        for who, body, turn in (("robot", robot, 0.0), ("human", person, np.pi)):
-            posture = case.agents[who]
-            own = pin.SE3(pin.rpy.rpyToMatrix(*posture.base_rpy_rad), np.array(posture.base_position_m))
-            world = pin.SE3(pin.rpy.rpyToMatrix(0.0, 0.0, turn), np.zeros(3)) * own
-            placed[who] = body.placed(posture.joints_rad, world)
-        found: dict[Pair, float] = {}
-        for who, label in (("robot", "robot"), ("human", scene.human.label)):
-            for pair, depth in overlaps(placed[who], None, self.exempt[label]).items():
-                found[f"{label} {pair[0]}", pair[1]] = depth
-        for pair, depth in overlaps(placed["robot"], placed["human"]).items():
-            found[f"robot {pair[0]}", f"{scene.human.label} {pair[1]}"] = depth
+        placed, found = {}, dict[Pair, float]()
         box = coal.Box(*scene.payload.size)
         load = [("load", box, coal.Transform3s(np.eye(3), np.array([0.0, 0.0, case.height_m])))]
-        for who, body, agent in (("robot", robot, scene.robot), ("human", person, scene.human)):
+        for agent in scene.agents:
+            posture, label = case.agents[agent.name], _label(agent)
+            body = robot if agent.designed else self.built[label]
+            own = pin.SE3(pin.rpy.rpyToMatrix(*posture.base_rpy_rad), np.array(posture.base_position_m))
+            world = pin.SE3(pin.rpy.rpyToMatrix(0.0, 0.0, agent.quarters * np.pi / 2.0), np.zeros(3)) * own
+            solids = placed[agent.name] = body.placed(posture.joints_rad, world)
+            for pair, depth in overlaps(solids, None, self.exempt[label]).items():
+                found[f"{agent.name} {pair[0]}", pair[1]] = depth
             hands = {link for hand in agent.hand_frames for link in _up(body.above, hand)}
-            for (link, _), depth in overlaps(placed[who], load).items():
+            for (link, _), depth in overlaps(solids, load).items():
                 if not any(near in hands for near in _up(body.above, link)):
-                    found[f"{who} {link}", "load"] = depth
+                    found[f"{agent.name} {link}", "load"] = depth
+        for one, other in combinations(placed, 2):
+            for pair, depth in overlaps(placed[one], placed[other]).items():
+                found[f"{one} {pair[0]}", f"{other} {pair[1]}"] = depth
         return found
+
+
+def _label(agent: Agent) -> str:
+    """Whose body it is: robots of the design have one."""
+    return ROBOT if agent.designed else agent.label or agent.name
 
 
 def _up(above: Mapping[str, str], link: str) -> list[str]:
