@@ -106,9 +106,7 @@ def worst_errors(problem: DesignProblem, known: Precomputed, genomes: list[Genom
 
 
 @pytest.mark.slow
-def test_gradients_agree_with_differences_through_the_pool(
-    native: DesignProblem, known: Precomputed
-) -> None:
+def test_gradients_agree_with_differences_through_the_pool(native: DesignProblem, known: Precomputed) -> None:
     names = ("human_load_torque", "back_compression", "worst_back_compression", "endurance_s")
     asked = tuple(Objective(name=name, sense=Sense.MINIMISE, unit="") for name in names)
     more = replace(native, objectives=(*native.objectives, *asked))
