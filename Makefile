@@ -34,9 +34,11 @@ $(VENV)/installed: pyproject.toml constraints.txt
 	$(PIP) --editable .
 	@touch $@
 
-$(VENV)/installed-dev: $(VENV)/installed
+# at once: to find out which packages fit takes pip half of its time
+$(VENV)/installed-dev: pyproject.toml constraints.txt
+	$(PYTHON) -m venv $(VENV)
 	$(PIP) --editable '.[$(EXTRAS)]'
-	@touch $@
+	@touch $(VENV)/installed $@
 
 $(VENV)/installed-robots: $(VENV)/installed-dev
 	$(PIP) --editable '.[robots]'

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from itertools import combinations
 
 from evodesign.collision.clearance import SolidBodies
@@ -18,6 +19,7 @@ from evodesign.mechanics.scene import Scene
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.task_tables import CollisionsTable
 from evodesign.records import ProblemSource
+from evodesign.tree.model import Tree
 
 DESIGNS = 16
 """Of which it is asked what their build brings together, beside the least and the largest one."""
@@ -40,7 +42,10 @@ def with_collisions(
     for scene in scenes:
         for agent in scene.agents:
             if id(agent) not in known:
-                known[id(agent)] = replace(agent, collisions=_rules(table, agent, space))
+                frames = tuple(agent.hand_frames), tuple(agent.foot_frames)
+                designed = space if agent.designed else None
+                rules = _rules(table, agent.tree, tuple(agent.joints), *frames, designed)
+                known[id(agent)] = replace(agent, collisions=rules)
     _refuse_unknown(table, source, [*known.values()])
     known = {key: _as_everyone(agent, known.values()) for key, agent in known.items()}
     return tuple(replace(scene, agents=tuple(known[id(agent)] for agent in scene.agents)) for scene in scenes)
@@ -56,29 +61,32 @@ def may_overlap(agent: Agent) -> Mapping[BodyPair, str]:
     }
 
 
-def _rules(table: CollisionsTable, agent: Agent, space: DesignSpace) -> CollisionRules:
+@lru_cache(maxsize=32)  # whoever builds a problem again, or another one with the same people, asks again
+def _rules(
+    table: CollisionsTable,
+    tree: Tree,
+    joints: tuple[str, ...],
+    hands: tuple[str, ...],
+    soles: tuple[str, ...],
+    space: DesignSpace | None,
+) -> CollisionRules:
+    """What an agent keeps clear of; it has no space if it is not designed."""
     ignored = {frozenset(pair) for pair in table.ignore}
-    checked = [
-        pair
-        for pair in checked_pairs(agent.tree, agent.joints, agent.hand_frames, agent.foot_frames)
-        if frozenset(pair) not in ignored
-    ]
-    resized = (space.resized(agent.tree, values) for values in _designs(space) if agent.designed)
-    built_in = built_in_pairs(agent.tree, agent.joints, checked, resized, table.margin_m)
+    checked = [pair for pair in checked_pairs(tree, joints, hands, soles) if frozenset(pair) not in ignored]
+    resized = (space.resized(tree, values) for values in _designs(space)) if space else ()
+    built_in = built_in_pairs(tree, joints, checked, resized, table.margin_m)
     built_in = tuple(pair for pair in built_in if frozenset(pair) not in ignored)
     own = {frozenset(pair): pair for pair in checked}
-    names = {*agent.tree.link_by_name}
+    names = {*tree.link_by_name}
     for pair in table.part:
         if pair[0] in names and (pair[1] in names or pair[1] == LOAD or pair[1] in PLANES):
             own.setdefault(frozenset(pair), pair)
-    feet = feet_pairs(agent.tree, agent.joints, agent.foot_frames, checked)
+    feet = feet_pairs(tree, joints, soles, checked)
     parted = (*feet, *(own[frozenset(pair)] for pair in table.part if frozenset(pair) in own))
     parted = tuple(dict.fromkeys(parted))
     narrow = {
-        **narrow_margins(agent.tree, [*own.values(), *built_in], table.margin_m),
-        **fitted_margins(
-            agent.tree, agent.joints, [pair for pair in own.values() if pair not in parted], table.margin_m
-        ),
+        **narrow_margins(tree, [*own.values(), *built_in], table.margin_m),
+        **fitted_margins(tree, joints, [pair for pair in own.values() if pair not in parted], table.margin_m),
     }
     return CollisionRules(table.margin_m, tuple(own.values()), parted, built_in=built_in, narrow=narrow)
 

@@ -49,9 +49,8 @@ BUDGET, POPULATION = 48, 12
 
 
 @pytest.fixture(scope="module")
-def light(problem: DesignProblem) -> DesignProblem:
-    text = f"{problem.source.text}{BOUNDS}[solver]\ncompile = false\n"
-    return build_problem(msgspec.structs.replace(problem.source, text=text))
+def light(native: DesignProblem) -> DesignProblem:
+    return build_problem(msgspec.structs.replace(native.source, text=f"{native.source.text}{BOUNDS}"))
 
 
 @pytest.fixture(scope="module")

@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from evodesign.problem.named_files import LONGEST_FILE
-from tests.cli.bounded import evodesign_bounded
+from tests.cli.bounded import Command, bounded_commands
 from tests.cli.here import evodesign
 from tests.cli.test_bad_input import PROBLEM, ROBOT, assert_explained, place, spoil
 
 __all__ = ["place"]
+
+
+@pytest.fixture(scope="module")
+def evodesign_bounded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Command]:
+    with bounded_commands(tmp_path_factory.mktemp("bounded")) as command:
+        yield command
+
 
 TWENTY_THOUSAND_PARTS = "a" + ".a" * 19_999 + " = 1\n"
 
@@ -29,13 +37,15 @@ TWENTY_THOUSAND_PARTS = "a" + ".a" * 19_999 + " = 1\n"
     ],
     ids=["20,000 parts", "4,000 parts", "a header", "70,000 keys", "1 MB", "nested arrays"],
 )
-def test_a_hostile_problem_is_refused_within_bounds(more: str, words: list[str], place: Path) -> None:
+def test_a_hostile_problem_is_refused_within_bounds(
+    more: str, words: list[str], place: Path, evodesign_bounded: Command
+) -> None:
     problem = place / PROBLEM
     problem.write_text(more + problem.read_text(encoding="utf-8"), encoding="utf-8")
     assert_explained(evodesign_bounded("check", problem), words)
 
 
-def test_a_file_without_end_is_refused_within_bounds(place: Path) -> None:
+def test_a_file_without_end_is_refused_within_bounds(place: Path, evodesign_bounded: Command) -> None:
     with (place / ROBOT).open("r+b") as file:
         file.truncate(10_000_000_000)
     words = [PROBLEM, "robot.urdf", f"a file of at most {LONGEST_FILE} letters"]
@@ -70,7 +80,9 @@ def fixed(name: str, parent: str, y: float) -> str:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("spread", [0.001, 0.0])
-def test_a_robot_with_three_thousand_fixed_children_is_read_within_bounds(spread: float, place: Path) -> None:
+def test_a_robot_with_three_thousand_fixed_children_is_read_within_bounds(
+    spread: float, place: Path, evodesign_bounded: Command
+) -> None:
     ys = [spread * (1 + n // 2) * (1 if n % 2 else -1) for n in range(3_000)]
     problem = robot_with(place, "".join(fixed(f"extra{n}", "root_link", y) for n, y in enumerate(ys)))
     done = evodesign_bounded("check", problem)
@@ -110,5 +122,7 @@ def test_a_robot_with_three_thousand_fixed_children_is_read_within_bounds(spread
     ],
     ids=["links", "chain", "elements", "tag", "name", "twice", "roots", "open", "shapes"],
 )
-def test_a_hostile_robot_is_refused_within_bounds(more: str, words: list[str], place: Path) -> None:
+def test_a_hostile_robot_is_refused_within_bounds(
+    more: str, words: list[str], place: Path, evodesign_bounded: Command
+) -> None:
     assert_explained(evodesign_bounded("check", robot_with(place, more)), ["icub_shapes.urdf", *words])

@@ -19,6 +19,7 @@ from evodesign.cli.show import show
 from evodesign.cli.tables.effort import TITLE
 from evodesign.errors import EvodesignError, InputError, RunError
 from evodesign.evaluation.evaluate import Evaluator
+from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.records import (
     Assessment,
@@ -58,10 +59,16 @@ def header_for(problem: DesignProblem) -> RunHeader:
 
 
 @pytest.fixture(scope="module")
-def run(problem: DesignProblem, evaluator: Evaluator, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def evaluator(native: DesignProblem, known: Precomputed) -> Evaluator:
+    """What commands that solve a design anew find ready."""
+    return Evaluator(native, known)
+
+
+@pytest.fixture(scope="module")
+def run(native: DesignProblem, evaluator: Evaluator, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run of two designs: the first with its postures, the second without."""
     evaluations, details = [], []
-    for number, genome in enumerate(problem.start[:2]):
+    for number, genome in enumerate(native.start[:2]):
         assessed = evaluator.assess(genome)
         evaluations.append(
             Evaluation(
@@ -75,7 +82,7 @@ def run(problem: DesignProblem, evaluator: Evaluator, tmp_path_factory: pytest.T
         )
         details.append(Detail(evaluation=number, cases=assessed.cases))
     assert all(detail.cases for detail in details)
-    return write_run(tmp_path_factory.mktemp("runs") / "real", header_for(problem), evaluations, details[:1])
+    return write_run(tmp_path_factory.mktemp("runs") / "real", header_for(native), evaluations, details[:1])
 
 
 def cells(text: str) -> list[list[str]]:

@@ -106,13 +106,11 @@ def worst_errors(problem: DesignProblem, known: Precomputed, genomes: list[Genom
 
 
 @pytest.mark.slow
-def test_gradients_agree_with_differences_through_the_pool(
-    problem: DesignProblem, known: Precomputed
-) -> None:
+def test_gradients_agree_with_differences_through_the_pool(native: DesignProblem, known: Precomputed) -> None:
     names = ("human_load_torque", "back_compression", "worst_back_compression", "endurance_s")
     asked = tuple(Objective(name=name, sense=Sense.MINIMISE, unit="") for name in names)
-    more = replace(problem, objectives=(*problem.objectives, *asked))
-    errors = worst_errors(more, known, drawn(9, len(problem.space.parameters), 2))
+    more = replace(native, objectives=(*native.objectives, *asked))
+    errors = worst_errors(more, known, drawn(9, len(native.space.parameters), 2))
     compared = [error for each in errors for error in each.values()]
     assert len(compared) >= 80
     assert max(compared) < 1e-5
@@ -156,14 +154,14 @@ def test_what_does_not_exist_has_no_gradient_and_a_reason(problem: DesignProblem
 
 @pytest.mark.slow
 def test_a_run_holds_gradients_and_is_resumed_and_replayed_with_them(
-    problem: DesignProblem, known: Precomputed, tmp_path
+    native: DesignProblem, known: Precomputed, tmp_path
 ) -> None:
-    settings = msgspec.structs.replace(problem.settings("surrogate", 8, 1), start=())
+    settings = msgspec.structs.replace(native.settings("surrogate", 8, 1), start=())
     assert settings.with_gradients
-    factory = AssessmentFactory("run", problem, known, gradients=True)
+    factory = AssessmentFactory("run", native, known, gradients=True)
     with SerialPool() as pool:
-        whole = start(tmp_path / "whole", header_of(problem, settings, 24), factory, pool, Silent())
-        start(tmp_path / "parts", header_of(problem, settings, 20), factory, pool, Silent())
+        whole = start(tmp_path / "whole", header_of(native, settings, 24), factory, pool, Silent())
+        start(tmp_path / "parts", header_of(native, settings, 20), factory, pool, Silent())
         parts = resume(tmp_path / "parts", lambda _: factory, pool, Silent(), 24)
     assert digest(parts.evaluations) == digest(whole.evaluations)
     replay(whole)
@@ -174,7 +172,7 @@ def test_a_run_holds_gradients_and_is_resumed_and_replayed_with_them(
         reach = whole.header.objectives[-1]
         assert (reach.name, reach.sense) == ("reach_height", Sense.MAXIMISE)
         robot, human, none = outcome.parts
-        assert (len(robot), len(human), none) == (len(problem.cases), len(problem.cases), ())
+        assert (len(robot), len(human), none) == (len(native.cases), len(native.cases), ())
         assert np.mean([part.value for part in robot]) == pytest.approx(outcome.objectives[0], rel=1e-12)
         means = np.mean([part.gradient for part in human], axis=0)
         assert means == pytest.approx(outcome.gradients[1], rel=1e-9, abs=1e-12)

@@ -63,6 +63,7 @@ def test_pairs_are_found_ignored_and_added(problem: DesignProblem) -> None:
     assert set(rules.checked) - set(other.checked) == {("head", LOAD), ("l_upper_leg", "r_upper_leg")}
     assert other.parted[-1] == ("l_hand", LOAD)
     assert {pair[0] for pair in other.parted[:-1]} == {"l_ankle_2", "l_foot_rear", "l_foot_front"}
+    assert build_problem(with_table(problem)).scene.robot.collisions == rules, "whatever was built in between"
 
 
 def test_what_only_a_resized_robot_brings_together_is_checked_and_told(problem: DesignProblem) -> None:

@@ -42,6 +42,7 @@ def check_prices(evaluator: Evaluator, wanted: int) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("few_designs_meet")
 def test_prices_of_the_default_problem_agree_with_differences(repository: Path) -> None:
     """Of its highest load: with sized actuators, which keep their sizes, a disturbance, and bodies apart."""
     source = read_source(repository / "problems" / "icub_lifting.toml")

@@ -9,7 +9,6 @@ import pytest
 
 from evodesign.records import Descriptor, Genome, SearchSettings
 from evodesign.searches.base import Outcome
-from evodesign.searches.map_elites import MapElites
 from evodesign.searches.registry import make_search
 
 DIMENSION, CELLS = 8, 10
@@ -89,7 +88,7 @@ def test_a_design_without_a_descriptor_is_no_elite() -> None:
             return Outcome((-100.0,), 0.0, descriptors=(None, 0.5))
         return bowl(genome)
 
-    search = MapElites(settings())
+    search = make_search(settings())
     late: list[Genome] = []
     for generation in range(20):
         genomes = search.ask()
@@ -102,7 +101,7 @@ def test_a_design_without_a_descriptor_is_no_elite() -> None:
     ("lower", "upper"), [(None, None), (0.4, None), (None, 0.45), (5.0, None), (None, -5.0)]
 )
 def test_bounds_that_are_not_given_are_found(lower: float | None, upper: float | None) -> None:
-    search = MapElites(settings(grid=(Descriptor("a", lower, upper, CELLS), GRID[1])))
+    search = make_search(settings(grid=(Descriptor("a", lower, upper, CELLS), GRID[1])))
     for _ in range(6):
         genomes = search.ask()
         search.tell([bowl(genome) for genome in genomes])

@@ -11,6 +11,7 @@ import pytest
 from evodesign.analysis.front import RunningFront, front
 from evodesign.analysis.hypervolume import best, hypervolume, reference_point
 from evodesign.evaluation.evaluate import Evaluator
+from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Detail, Evaluation, Front, Generation
 from evodesign.runlog.header import header_of
@@ -23,19 +24,18 @@ RANDOM_DESIGNS = 4
 
 
 @pytest.fixture(scope="session")
-def real_run(
-    problem: DesignProblem, evaluator: Evaluator, tmp_path_factory: pytest.TempPathFactory
-) -> RunLog:
+def real_run(native: DesignProblem, known: Precomputed, tmp_path_factory: pytest.TempPathFactory) -> RunLog:
     """One generation of real evaluations, with the postures that a search would log."""
     directory = tmp_path_factory.mktemp("page") / "real"
     generator = random.Random(7)
-    genomes = [*problem.start]
+    evaluator = Evaluator(native, known)
+    genomes = [*native.start]
     genomes += [tuple(generator.random() for _ in genomes[0]) for _ in range(RANDOM_DESIGNS)]
-    settings = problem.settings("nsga2", len(genomes), 1)
-    objectives = problem.objectives
+    settings = native.settings("nsga2", len(genomes), 1)
+    objectives = native.objectives
     running = RunningFront(objectives)
     done: list[Evaluation] = []
-    with RunWriter(directory, header_of(problem, settings, len(genomes))) as log:
+    with RunWriter(directory, header_of(native, settings, len(genomes))) as log:
         for number, genome in enumerate(genomes):
             assessed = evaluator.assess(genome)
             evaluation = Evaluation(

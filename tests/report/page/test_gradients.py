@@ -8,6 +8,7 @@ import pytest
 
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.progress import SILENT
+from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Evaluation
 from evodesign.report.page.gather import gradients_of
@@ -19,13 +20,13 @@ STEP = 1e-3
 
 @pytest.mark.slow
 def test_gradients_of_a_logged_design_are_slopes_of_its_objectives(
-    problem: DesignProblem, evaluator: Evaluator, tmp_path: Path
+    native: DesignProblem, known: Precomputed, tmp_path: Path
 ) -> None:
-    space = problem.space
-    values = space.unscaled(problem.scene.robot.tree)
+    evaluator, space = Evaluator(native, known), native.space
+    values = space.unscaled(native.scene.robot.tree)
     genome = space.genome(values)
-    table = problem.search
-    header = header_of(problem, problem.settings("nsga2", table.population, 1, table.asynchronous), 1)
+    table = native.search
+    header = header_of(native, native.settings("nsga2", table.population, 1, table.asynchronous), 1)
     logged = Evaluation(
         number=7,
         generation=0,
@@ -38,12 +39,11 @@ def test_gradients_of_a_logged_design_are_slopes_of_its_objectives(
     gradients = gradients_of(run, [7], 1, SILENT)
     assert set(gradients) == {7}
     place = [parameter.name for parameter in space.parameters].index("length.forearm")
+    sides = []
+    for sign in (-1.0, 1.0):
+        moved = list(values)
+        moved[place] += sign * STEP
+        sides.append(evaluator.assessment(moved, evaluator.solve(moved)).objectives)
     for objective in ("robot_torque", "reach_height"):
-        sides = []
-        for sign in (-1.0, 1.0):
-            moved = list(values)
-            moved[place] += sign * STEP
-            found = evaluator.assessment(moved, evaluator.solve(moved)).objectives
-            sides.append(found[objective])
-        slope = (sides[1] - sides[0]) / (2.0 * STEP)
+        slope = (sides[1][objective] - sides[0][objective]) / (2.0 * STEP)
         assert gradients[7][objective]["length.forearm"] == pytest.approx(slope, rel=1e-3)
