@@ -29,6 +29,7 @@ from evodesign.posture.design_checkers import with_hardware
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, Reach, common_reach
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import CaseSolution, Neighbour
+from evodesign.posture.seeking.exchange import other_ways
 from evodesign.problem.build import DesignProblem
 from evodesign.quantities.demand import SizedRobot
 from evodesign.quantities.design_result import DesignResult
@@ -243,10 +244,26 @@ class _OneDesign:
             if begun.attempts and not begun.solved and all(begun is not earlier for earlier in before):
                 now = self._searched(values, begun, reach, check, [*found.values()], lost=lost)
                 found[begun.case], lost = now, lost or not now.solved
+        if not before:
+            found |= self._improved(values, [each for each in found.values() if each.solved], reach, check)
         for case, lift in lifts.items():
             if case not in found:
                 found[case] = self._lifted(values, case, lift, reach, check, [*found.values()])
         return tuple(found[case] for case in cases)
+
+    def _improved(
+        self, values: Sequence[float], solved: Sequence[CaseSolution], reach: Reach | None, check: Checker
+    ) -> dict[Case, CaseSolution]:
+        """The cases of a task in which robots stand differently: each in its own way, or in a better one."""
+        found = dict[Case, CaseSolution]()
+        robots = [robot.name for robot in self._problem.scene.robots]
+        for own in solved:
+            others = other_ways(own, self._similar(solved, own.case), robots)
+            if others:
+                postures, polished = self._solver.inner.postures[own.case.pair], reach is not None
+                checker = self._checker(values, own.case, check)
+                found[own.case] = postures.improved(values, own, others, checker, polished=polished)
+        return found
 
     def _lifted(
         self,
@@ -281,16 +298,20 @@ class _OneDesign:
 
     def _neighbour(self, before: Sequence[CaseSolution], case: Case) -> Neighbour | None:
         """The most similar case of the same task that was solved before: of the same load if there is one."""
+        similar = self._similar(before, case)
+        same_load = [solution for solution in similar if solution.case.payload == case.payload]
+        return Neighbour((same_load or similar)[-1]) if similar else None
+
+    def _similar(self, before: Sequence[CaseSolution], case: Case) -> list[CaseSolution]:
+        """The solved ones of the same task."""
         joints = _joints(self._problem.scene_of(case))
-        similar = [
+        return [
             solution
             for solution in before
             if solution.solved
             and solution.case.task == case.task
             and _joints(self._problem.scene_of(solution.case)) == joints
         ]
-        same_load = [solution for solution in similar if solution.case.payload == case.payload]
-        return Neighbour((same_load or similar)[-1]) if similar else None
 
     def _in_case(
         self,

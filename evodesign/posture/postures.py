@@ -4,6 +4,8 @@ A scene that is its own mirror image is solved for symmetric postures: half the 
 minima. The whole program, started from the symmetric solution, is the polish, and the refuge when no
 symmetric posture is found. Solves begin at the problem's portfolio of starts (at two fixed ones where there
 is none), so that the result depends on problem and design alone.
+
+Beyond 300 lines: the order in which formulations, methods and starts are tried stands in one class.
 """
 
 from __future__ import annotations
@@ -11,6 +13,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from enum import StrEnum
+
+import numpy as np
 
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.optimality import NotDifferentiable
@@ -21,6 +25,7 @@ from evodesign.posture.formulations.base import Setting
 from evodesign.posture.formulations.joint import JointPostures
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED, Precomputed
 from evodesign.posture.results import CaseSolution, Neighbour
+from evodesign.posture.seeking.budget import BUDGET
 from evodesign.posture.seeking.candidate import Trial, case_solution
 from evodesign.posture.seeking.landscape import Landscape
 from evodesign.posture.solution_derivative import PostureDerivative
@@ -117,9 +122,42 @@ class PostureProblem:
         round of sizing goes on from does not.
         """
         trials = [next(self._trials(design, task, checker, neighbour))]
-        if not polished:
-            return case_solution(self._setting.scene.case(task), trials)
-        return self._finished(design, task, checker, trials)
+        return self._ended(design, task, checker, trials, polished=polished)
+
+    def improved(
+        self,
+        design: Sequence[float],
+        solution: CaseSolution,
+        others: Sequence[CaseSolution],
+        checker: Checker,
+        *,
+        polished: bool,
+    ) -> CaseSolution:
+        """The best of a solution and of what others of the same design lead to; arguments as in `begun`."""
+        task = solution.case.task
+        name, _ = next(self._in_turn(task))
+        formulation = self._formulation(name, task, self._methods(name)[0])
+        for other in others:
+            most = (1.0 - BUDGET.same) * _cost(solution)
+            trials = [formulation.cheaper(design, task, other, checker, most)]
+            found = self._ended(design, task, checker, trials, polished=polished)
+            best = min(found, solution, key=_cost)
+            solution = replace(best, attempts=(*solution.attempts, *found.attempts))
+        return solution
+
+    def _ended(
+        self,
+        design: Sequence[float],
+        task: Task,
+        checker: Checker,
+        trials: Sequence[Trial],
+        *,
+        polished: bool,
+    ) -> CaseSolution:
+        """The best posture of some trials, polished only where it is asked to be."""
+        if polished:
+            return self._finished(design, task, checker, trials)
+        return case_solution(self._setting.scene.case(task), trials)
 
     def _finished(
         self, design: Sequence[float], task: Task, checker: Checker, trials: Sequence[Trial]
@@ -292,6 +330,10 @@ class PostureProblem:
         compiled = options.compiled and method is options.method and (native or not refuge)
         changed = replace(options, method=method, compiled=compiled, seldom=native and refuge)
         return replace(self._setting, options=changed)
+
+
+def _cost(solution: CaseSolution) -> float:
+    return np.inf if solution.attempt is None else solution.attempt.cost
 
 
 def _raw_of(solution: CaseSolution, formulation: str) -> RawSolution | None:

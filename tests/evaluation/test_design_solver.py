@@ -5,17 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import msgspec
+import numpy as np
 import pytest
 
 from evodesign.evaluation.design_solver import LESS
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.nlp.method import MethodName
 from evodesign.nlp.program import Start
-from evodesign.posture.postures import PostureProblem
+from evodesign.nlp.solver import SolverCache
+from evodesign.posture.formulations.base import Setting
+from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import Attempt, CaseSolution, Neighbour
 from evodesign.posture.seeking.start_portfolio import Coverage, StartPortfolio
-from evodesign.problem.build import DesignProblem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.records import Case, Hold, Status, Task
 
 HEIGHTS = (0.9, 1.0, 1.1)
@@ -99,3 +103,34 @@ def test_a_posture_near_the_end_of_reach_is_found_from_there(
         replace(known, postures={Case(person="", payload="", task=nearly.tasks[0]): portfolio}),
     ).solve(values)
     assert result.cases[0].solved, result.cases[0].reason
+
+
+def test_what_the_robot_does_best_with_one_load_is_tried_with_another_one(problem: DesignProblem) -> None:
+    """Two loads of one size, each with one start, of which one leads to a posture that costs more."""
+    load = '[payload]\nsize_m = [0.5, 0.5, 0.025]\nmass_kg = 5.0\ngrasp = "point"'
+    text = problem.source.text.replace("heights_m = [0.8, 1.0, 1.2]", "heights_m = [1.0]")
+    loads = (load.replace("[payload]", "[[payload]]").replace("5.0", mass) for mass in ("5.0", "5.5"))
+    source = msgspec.structs.replace(problem.source, text=text.replace(load, "\n".join(loads)))
+    two = replace(build_problem(source), options=problem.options)
+    (task,), (light, heavy) = two.tasks, two.scenes
+    design = two.space.unscaled(two.scene.robot.tree)
+    setting, solvers = Setting(heavy, two.space, two.weights, two.options), SolverCache()
+    alone = PostureProblem(setting, Symmetry.ON, solvers=solvers)
+    landscape, rng = alone.landscape(task), np.random.default_rng(1)
+    good = landscape.solve(design, landscape.starts[1])
+    ends = (landscape.solve(design, landscape.free_start(rng)) for _ in range(20))
+    bad = next(end for end in ends if end.status is Status.SOLVED and end.cost > 1.1 * good.cost)
+
+    def costs(*starts: Start) -> list[float]:
+        known = {
+            scene.case(task): StartPortfolio((start,), Coverage(0, 0, 0.0))
+            for scene, start in zip((light, heavy), starts, strict=True)
+        }
+        cases = Evaluator(two, Precomputed(postures=known), solvers).solve(design).cases
+        return [each.attempt.cost for each in cases if each.attempt]
+
+    alike = costs(good.values, good.values)
+    assert alike[1] == pytest.approx(good.cost, rel=1e-6)
+    assert costs(good.values, bad.values) == pytest.approx(alike, rel=1e-6)
+    assert costs(bad.values, good.values) == pytest.approx(alike, rel=1e-6)
+    assert costs(bad.values, bad.values)[1] == pytest.approx(bad.cost, rel=1e-3)

@@ -253,6 +253,17 @@ class JointPostures:
         others = named_starts(self._solver, portfolio, self._fixed(task))
         return self._trial(design, task, [("neighbour", known), *others], checker)
 
+    def cheaper(
+        self, design: Sequence[float], task: Task, neighbour: CaseSolution, checker: Checker, most: float
+    ) -> Trial:
+        """What the solution in a similar scene leads to, where that promises to cost less than `most`."""
+        parameters = {"design": design, **self._beside(task)}
+        start = self._begun(self._start(neighbour.instants), parameters)
+        raw = self._seeker.brief.solve(parameters, start)
+        if raw.status is Status.SOLVED and raw.cost < most:
+            return self._cheapest(parameters, task, [("neighbour", raw)], checker)
+        return Trial((checked(self.name, "neighbour", raw, ()),), None)
+
     def followed(
         self, design: Sequence[float], solution: CaseSolution, raw: RawSolution
     ) -> CaseSolution | None:

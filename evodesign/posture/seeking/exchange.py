@@ -3,11 +3,14 @@
 Robot and person have several ways to stand each, and hardly more than the load couples them: the best pair of
 ways may be none that a start led to. What a pair asks at least is known before it is solved: the efforts of
 both, each in its own posture.
+
+The same holds between cases: the robot of a design has the same ways to stand whoever holds the load with it,
+and the starts of one case lead to the best of them where those of another do not.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
@@ -15,7 +18,7 @@ from evodesign.mechanics.agent import Role
 from evodesign.nlp.program import Program
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.assemble import Slot
-from evodesign.posture.results import Array
+from evodesign.posture.results import Array, CaseSolution
 from evodesign.posture.seeking.budget import BUDGET
 from evodesign.posture.symmetry import Form
 
@@ -57,3 +60,26 @@ class Exchange:
         robot, person = np.unravel_index(int(np.argmin(pairs)), pairs.shape)
         enough = pairs[robot, person] < BUDGET.exchange * np.diag(pairs).min()
         return (int(robot), int(person)) if enough else None
+
+
+def other_ways(
+    own: CaseSolution, others: Sequence[CaseSolution], robots: Collection[str]
+) -> list[CaseSolution]:
+    """The solutions of other cases in which robots stand differently, each way once.
+
+    Args:
+        own: of a load held still, solved; likewise all others.
+        others: of the same design and task.
+        robots: names of the agents that are robots.
+    """
+    ways, found = [_angles(own, robots)], list[CaseSolution]()
+    for other in others:
+        angles = _angles(other, robots)
+        if all(np.abs(angles - way).max(initial=0.0) > BUDGET.other_way for way in ways):
+            ways.append(angles)
+            found.append(other)
+    return found
+
+
+def _angles(solution: CaseSolution, robots: Collection[str]) -> Array:
+    return np.array([q for robot in robots for q in solution.postures[robot].joints.values()])

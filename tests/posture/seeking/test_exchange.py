@@ -15,8 +15,9 @@ from evodesign.posture.check import AgentModel, Checker
 from evodesign.posture.formulations.base import Setting
 from evodesign.posture.postures import PostureProblem, Symmetry
 from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.posture.results import AgentPosture, CaseSolution, Instant
 from evodesign.posture.seeking.budget import BUDGET
-from evodesign.posture.seeking.exchange import Exchange
+from evodesign.posture.seeking.exchange import Exchange, other_ways
 from evodesign.posture.seeking.start_portfolio import Coverage, StartPortfolio
 from evodesign.posture.symmetry import symmetric_forms
 from evodesign.posture.warm_start import instants_of, layout_of
@@ -107,3 +108,24 @@ def effort(end: RawSolution, who: str) -> float:
 def of_both(one: RawSolution, other: RawSolution) -> Start:
     """The robot of one beside the person of another."""
     return {**one.values, **{name: value for name, value in other.values.items() if name.startswith(HUMAN)}}
+
+
+def standing(robot: float, person: float) -> CaseSolution:
+    """A posture of two agents with one joint each."""
+    agents = {ROBOT: robot, HUMAN: person}
+    postures = {
+        name: AgentPosture(np.zeros(3), np.zeros(3), {"knee": angle}, {}, {})
+        for name, angle in agents.items()
+    }
+    case = Case(task=Hold(height_m=1.0))
+    return CaseSolution(case, Status.SOLVED, "", (Instant(0.0, postures),))
+
+
+def test_each_other_way_of_the_robot_is_given_once() -> None:
+    own, little, far = standing(0.0, 1.0), 0.9 * BUDGET.other_way, 1.1 * BUDGET.other_way
+    others = [standing(q, 5.0) for q in (0.0, little, far, far + little, 2.1 * far, -far)]
+    assert other_ways(own, others, [ROBOT]) == [others[2], others[4], others[5]]
+
+
+def test_people_alone_have_no_other_way() -> None:
+    assert other_ways(standing(0.0, 1.0), [standing(3.0, 5.0)], []) == []
