@@ -65,7 +65,7 @@ def crowd(percentiles: str, sex: str = "both") -> str:
         ),
         (PROBLEM, "lower = 0.6", "lower = 2.6", ["design.length[0].lower", "less than upper (1.8)", "2.6"]),
         (PROBLEM, "mass_kg = 5.0", "mass_kg = -5.0", ["payload.mass_kg", "> 0", "-5.0"]),
-        (PROBLEM, "[0.8, 1.0, 1.2]", '[0.8, "high", 1.2]', ["task.heights_m[1]", "float", "'high'"]),
+        (PROBLEM, "[0.8, 1.0, 1.2]", '[0.8, "high", 1.2]', ["task.heights_m[1]", "a number", "'high'"]),
         (PROBLEM, "[0.8, 1.0, 1.2]", "[0.8, nan, 1.2]", ["task.heights_m[1]", "finite number", "nan"]),
         (PROBLEM, "[0.8, 1.0, 1.2]", "[]", ["task.heights_m", "[]"]),
         (PROBLEM, 'sex = "male"', 'sex = "robot"', ["human.sex", "'robot'"]),

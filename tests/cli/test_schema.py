@@ -66,7 +66,7 @@ def fault(text: str) -> InputError | None:
 
 def beyond_a_schema(error: InputError) -> bool:
     """Whether a text is too large, or no TOML, or has a number that JSON cannot tell from another."""
-    whole = error.wanted == "int" and re.fullmatch(r"[\d.e+]+", error.found) is not None
+    whole = error.wanted == "a whole number" and re.fullmatch(r"[\d.e+]+", error.found) is not None
     return whole or error.wanted.startswith(BEYOND)
 
 

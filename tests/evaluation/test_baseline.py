@@ -130,7 +130,7 @@ def test_limits_that_are_not_enforced_are_named(repository: Path) -> None:
             "baseline.preferred_densities_kg_per_m3: wanted densities, as baseline.weights.density asks for, "
             "found none",
         ),
-        ("torque = 1.0", "torque = 0.0", "baseline.weights.torque: wanted `float` > 0.0, found 0.0"),
+        ("torque = 1.0", "torque = 0.0", "baseline.weights.torque: wanted a number > 0.0, found 0.0"),
         ("[baseline]\n", "[baseline]\njoint_limit = true\n", "did you mean 'joint_limits'?"),
         (
             'start = "../populations/sartore2022.toml"\n\n[baseline]\n',

@@ -76,7 +76,7 @@ def test_differences_are_told_with_both_values() -> None:
 
 
 @pytest.fixture(scope="module")
-def native(problem: DesignProblem, known: Precomputed) -> Evaluator:
+def natively(problem: DesignProblem, known: Precomputed) -> Evaluator:
     return Evaluator(replace(problem, options=NATIVE), known)
 
 
@@ -85,11 +85,11 @@ def unscaled_values(problem: DesignProblem) -> tuple[float, ...]:
 
 
 @pytest.mark.needs_compiler
-def test_the_judge_agrees(native: Evaluator, monkeypatch: pytest.MonkeyPatch) -> None:
-    genome = native.problem.space.genome(unscaled_values(native.problem))
-    assert native.assess(genome).assessment.judged is msgspec.UNSET or is_judged(genome)
+def test_the_judge_agrees(natively: Evaluator, monkeypatch: pytest.MonkeyPatch) -> None:
+    genome = natively.problem.space.genome(unscaled_values(natively.problem))
+    assert natively.assess(genome).assessment.judged is msgspec.UNSET or is_judged(genome)
     monkeypatch.setattr("evodesign.evaluation.evaluate.is_judged", lambda _: True)
-    assessment = native.assess(genome).assessment
+    assessment = natively.assess(genome).assessment
     assert assessment.judged == pytest.approx(assessment.objectives, rel=1e-5)
     assert assessment.judged != assessment.objectives  # it is another solve
     assert not any(case.fallbacks for case in assessment.cases)
@@ -97,16 +97,16 @@ def test_the_judge_agrees(native: Evaluator, monkeypatch: pytest.MonkeyPatch) ->
 
 @pytest.mark.needs_compiler
 def test_ipopt_takes_over_where_the_native_method_fails(
-    native: Evaluator, evaluator: Evaluator, monkeypatch: pytest.MonkeyPatch
+    natively: Evaluator, evaluator: Evaluator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    unscaled = unscaled_values(native.problem)
+    unscaled = unscaled_values(natively.problem)
     solve = NativeMethod.solve
 
     def failing(self: NativeMethod, *arguments: object) -> Ending:
         return replace(solve(self, *arguments), word="Restoration_Failed")  # type: ignore[arg-type]
 
     monkeypatch.setattr(NativeMethod, "solve", failing)
-    ours, theirs = native.solve(unscaled), evaluator.solve(unscaled)
+    ours, theirs = natively.solve(unscaled), evaluator.solve(unscaled)
     assert ours.reach == theirs.reach
     for one, other in zip(ours.cases, theirs.cases, strict=True):
         assert one.status is Status.SOLVED
@@ -119,14 +119,14 @@ def test_ipopt_takes_over_where_the_native_method_fails(
 
 @pytest.mark.needs_compiler
 def test_derivatives_of_native_solutions_are_those_of_ipopt(
-    native: Evaluator, evaluator: Evaluator, known: Precomputed
+    natively: Evaluator, evaluator: Evaluator, known: Precomputed
 ) -> None:
     """Where both end at the same optimum, as they mostly do from the same starts."""
-    values = unscaled_values(native.problem)
-    ended = [each.solve(values) for each in (native, evaluator)]
+    values = unscaled_values(natively.problem)
+    ended = [each.solve(values) for each in (natively, evaluator)]
     ours, theirs = (
         Sensitivities(each.problem, known).at(values, end)
-        for each, end in zip((native, evaluator), ended, strict=True)
+        for each, end in zip((natively, evaluator), ended, strict=True)
     )
     costs = np.array([[case.attempt.cost for case in end.cases if case.attempt] for end in ended])
     same = np.isclose(*costs, rtol=1e-6)

@@ -68,7 +68,7 @@ def other_ways(
     """The solutions of other cases in which robots stand differently, each way once.
 
     Args:
-        own: of a load held still, solved; likewise all others.
+        own: solved; likewise all others.
         others: of the same design and task.
         robots: names of the agents that are robots.
     """
@@ -82,4 +82,5 @@ def other_ways(
 
 
 def _angles(solution: CaseSolution, robots: Collection[str]) -> Array:
-    return np.array([q for robot in robots for q in solution.postures[robot].joints.values()])
+    postures = [instant.postures[robot] for instant in solution.instants for robot in robots]
+    return np.array([angle for posture in postures for angle in posture.joints.values()])
