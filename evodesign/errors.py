@@ -15,7 +15,9 @@ from __future__ import annotations
 
 import difflib
 import re
+import traceback
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 LONGEST_WORD, LONGEST_CLAUSE = 80, 600
 """Letters of a word (paths have one in each folder) and of a clause that a message repeats of a file."""
@@ -97,3 +99,19 @@ def nearest_name(name: str, names: Iterable[str]) -> str:
         return ""
     match = difflib.get_close_matches(name, list(names), n=1, cutoff=0.5)
     return f"; did you mean '{match[0]}'?" if match else ""
+
+
+def explain(error: BaseException) -> str:
+    """Kind, text and last line of an exception, such as `ValueError: no root (model.py:120 in root)`.
+
+    An error of evodesign is its text: a sentence that says where to look.
+    """
+    if isinstance(error, EvodesignError):
+        return str(error)
+    text = " ".join(str(error).split())
+    sentence = f"{type(error).__name__}: {text}" if text else type(error).__name__
+    frames = traceback.extract_tb(error.__traceback__)
+    if not frames:
+        return sentence
+    last = frames[-1]
+    return f"{sentence} ({Path(last.filename).name}:{last.lineno} in {last.name})"

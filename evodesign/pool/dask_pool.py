@@ -30,10 +30,9 @@ from typing import Any, Generic
 from distributed import Client, Future, Security, rpc
 from distributed.scheduler import KilledWorker
 
-from evodesign.errors import InputError, Interrupted
+from evodesign.errors import InputError, Interrupted, explain
 from evodesign.pool.base import A, Factory, Finished, Pool, R
 from evodesign.pool.dispatch import ends_of
-from evodesign.pool.worker import explain
 from evodesign.pool.worker_group import WorkerGroup
 from evodesign.pool.worker_process import WorkerProcess
 

@@ -12,7 +12,6 @@ import signal
 import sys
 import threading
 import time
-import traceback
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
@@ -20,6 +19,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Generic
 
+from evodesign.errors import explain
 from evodesign.pool.base import A, Factory, Finished, Pool, R
 
 ORPHAN_CHECK = 1.0
@@ -52,17 +52,6 @@ def attempt(call: Callable[[], R]) -> CallResult[R]:
         return CallResult(call(), None)
     except (Exception, SystemExit) as error:  # noqa: BLE001 - a design that fails must not end the search
         return CallResult(None, explain(error))
-
-
-def explain(error: BaseException) -> str:
-    """Kind, text and last line of an exception, such as `ValueError: no root (model.py:120 in root)`."""
-    text = " ".join(str(error).split())
-    sentence = f"{type(error).__name__}: {text}" if text else type(error).__name__
-    frames = traceback.extract_tb(error.__traceback__)
-    if not frames:
-        return sentence
-    last = frames[-1]
-    return f"{sentence} ({Path(last.filename).name}:{last.lineno} in {last.name})"
 
 
 class Workbench(Generic[A, R]):

@@ -24,8 +24,9 @@ from joblib.externals.loky.process_executor import (
     TerminatedWorkerError,
 )
 
+from evodesign.errors import explain
 from evodesign.pool.base import A, Factory, Finished, R, limits_of
-from evodesign.pool.worker import build_here, explain, finish_here, start_worker
+from evodesign.pool.worker import build_here, finish_here, start_worker
 
 ONE_THREAD = dict.fromkeys(
     (

@@ -26,7 +26,7 @@ import numpy as np
 
 from evodesign.collision.parts import part_clearance
 from evodesign.collision.zero_posture import built_in_slack
-from evodesign.errors import InputError
+from evodesign.errors import InputError, explain
 from evodesign.human.strength import largest_relative_torque
 from evodesign.mechanics.agent import HUMAN, ROBOT, Agent
 from evodesign.mechanics.balance import standing_height_of_mass
@@ -417,8 +417,15 @@ def objective_value(name: str, result: DesignResult) -> float | None:
 
     Raises:
         KeyError: no objective has this name.
+        InputError: a function of the user's failed.
     """
     kind = objective_kind(name)
     if kind is None:
         raise KeyError(name)
-    return kind.value(result)
+    if not is_outside(name):
+        return kind.value(result)
+    try:
+        return kind.value(result)
+    except Exception as error:  # it may raise anything
+        found = f"'{name}', which fails: {explain(error)}"
+        raise InputError("objectives", "", "a function that gives a value, or None", found) from error

@@ -6,7 +6,8 @@ from collections.abc import Callable
 
 import pytest
 
-from evodesign.pool.worker import Workbench, explain
+from evodesign.errors import InputError, explain
+from evodesign.pool.worker import Workbench
 
 
 def test_an_error_without_text_or_traceback_is_its_kind() -> None:
@@ -22,6 +23,12 @@ def test_an_error_names_the_file_and_line_where_it_arose() -> None:
         int("seven")
     place = f"(test_worker.py:{caught.tb.tb_lineno} in {caught.tb.tb_frame.f_code.co_name})"
     assert explain(caught.value) == f"ValueError: invalid literal for int() with base 10: 'seven' {place}"
+
+
+def test_a_sentence_for_the_user_stays_as_it_is() -> None:
+    assert (
+        explain(InputError("a.toml", "mass", "a number", "'x'")) == "a.toml: mass: wanted a number, found 'x'"
+    )
 
 
 def test_nothing_is_built_before_the_first_argument() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import msgspec
 import pytest
@@ -15,8 +15,8 @@ from evodesign.evaluation.evaluate import AssessmentFactory
 from evodesign.evaluation.factory import Remembering
 from evodesign.posture.precompute.precomputed import NOTHING_PRECOMPUTED
 from evodesign.problem.build import DesignProblem, build_problem
-from evodesign.quantities.design_result import ObjectiveKind
-from evodesign.quantities.objectives import objective_kind, objective_kinds
+from evodesign.quantities.design_result import DesignResult, ObjectiveKind
+from evodesign.quantities.objectives import objective_kind, objective_kinds, objective_value
 from evodesign.records import SearchSettings
 
 MODULE = """
@@ -24,6 +24,7 @@ from evodesign.quantities.objectives import CaseQuantity, ObjectiveKind
 
 load = CaseQuantity("kg", lambda scene, postures: scene.payload.mass)
 joints = ObjectiveKind("1", lambda result: float(len(result.robot.joints)))
+mistaken = ObjectiveKind("1", lambda result: 1 / 0)
 number = 3
 
 class Middle:
@@ -145,3 +146,11 @@ def test_nothing_is_imported_that_the_user_has_not_named(
     assert "of_mine" not in sys.modules
     with pytest.raises(InputError, match="wanted a module that the environment variable"):
         make_search(msgspec.structs.replace(settings, algorithm="subprocess:Popen"))
+
+
+def test_a_function_that_fails_is_told_in_a_sentence_with_its_line() -> None:
+    fails = r"found 'of_mine:mistaken', which fails: ZeroDivisionError: division by zero \(of_mine.py:6 in <"
+    with pytest.raises(
+        InputError, match=f"^objectives: wanted a function that gives a value, or None, {fails}"
+    ):
+        objective_value("of_mine:mistaken", cast("DesignResult", None))
