@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
@@ -188,7 +189,9 @@ def case_solution(case: Case, trials: Sequence[Trial]) -> CaseSolution:
     found = [trial.best for trial in trials if trial.best is not None]
     if not found:
         status = worst_status([attempt.status for attempt in attempts])
-        reason = f"no posture found at {case.task}: " + "; ".join(a.reason for a in attempts)
+        reasons = Counter(attempt.reason for attempt in attempts)
+        counted = (f"{reason} ({times} times)" if times > 1 else reason for reason, times in reasons.items())
+        reason = f"no posture found at {case.task}: {'; '.join(counted)}"
         return CaseSolution(case, status, reason, attempts=attempts)
     best = min(found, key=lambda candidate: candidate.attempt.cost)
     return CaseSolution(

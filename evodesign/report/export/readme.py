@@ -31,7 +31,7 @@ there is no load, so pause it first.""",
     "human.urdf": """\
 The person, for kinematics and viewing; MuJoCo refuses links that move and have no mass.""",
     "postures.csv": """\
-Coordinates of the root links, joint positions and joint torques of robot and person, one joint per row.""",
+Coordinates of the root links, joint positions and joint torques of each agent, one joint per row.""",
     "wrenches.csv": """\
 Force and moment on each hand (about the grasp point, in the agent's own frame) and foot (about the sole's
 origin, in the sole's frame).""",
@@ -40,7 +40,7 @@ All that is known of this design: parameters, objectives, reach, outcome and pos
     "replay.mcap": """\
 The postures as a recording, heights as time: ten seconds per metre, so a load at 1.2 m is at 12 s, and the
 last posture stays a second. Open it in Foxglove or Lichtblick with "Open local file". `/tf` holds all frames,
-`/scene/...` shapes and arrows, `/joint_states/...` positions, and torques as efforts; both URDF files are
+`/scene/...` shapes and arrows, `/joint_states/...` positions, and torques as efforts; the URDF files are
 attached.""",
     "layout.json": """\
 Panels for the recording. In Foxglove or Lichtblick: the layout menu, "Import from file".""",
@@ -67,7 +67,7 @@ HEIGHTS_AS_TIME: Final = "heights as time: ten seconds per metre, so a load at 1
 CASES_AS_TIME: Final = f"one case after the other, {SECONDS_PER_CASE} seconds each"
 
 FRAMES: Final = """\
-SI units throughout. World: origin on the ground under the load, x from the robot towards the person, z up. An
+SI units throughout. World: origin on the ground under the load, x from the robot towards the load, z up. An
 agent's own frame is the world turned about z so that it looks along +x at the load. Roll, pitch and yaw are
 those of URDF. Joints that are not listed stand at zero.
 """
@@ -118,8 +118,7 @@ def _texts(design: ExportedDesign, files: Sequence[str]) -> dict[str, str]:
             texts[name] = f"{who}, for kinematics and viewing."
     if several(design.cases):
         texts["robot.xml"] = FILES["robot.xml"].replace("per load height", "per case")
-        replay = FILES["replay.mcap"].replace(HEIGHTS_AS_TIME, CASES_AS_TIME)
-        texts["replay.mcap"] = replay.replace("both URDF files", "all URDF files")
+        texts["replay.mcap"] = FILES["replay.mcap"].replace(HEIGHTS_AS_TIME, CASES_AS_TIME)
     return texts
 
 

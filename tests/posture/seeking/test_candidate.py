@@ -9,9 +9,9 @@ import numpy as np
 from evodesign.nlp.solver import Multipliers, RawSolution
 from evodesign.posture.limit_groups import LimitGroup
 from evodesign.posture.seeking.budget import BUDGET
-from evodesign.posture.seeking.candidate import Candidate, Finishing, Trial, cheapest, checked
+from evodesign.posture.seeking.candidate import Candidate, Finishing, Trial, case_solution, cheapest, checked
 from evodesign.posture.terms.base import Residual
-from evodesign.records import Status
+from evodesign.records import Case, Hold, Status
 
 NOTHING = np.zeros(0)
 OVERLAP = Residual("overlap", 0.01, "m", "shank and thigh apart", LimitGroup.COLLISIONS, posture_only=True)
@@ -194,3 +194,11 @@ def test_two_trials_are_one_with_the_best_of_both() -> None:
     assert best_of(none.beside(other)) == ("start 1", 9.0)
     assert not none.beside(other).overlaps
     assert none.beside(Asked({}, refused=(10.0,)).trial(10.0)).overlaps
+
+
+def test_a_case_without_a_posture_counts_each_reason_once() -> None:
+    trial = Asked({}, refused=(10.0,)).trial(10.0)
+    (attempt,) = trial.attempts
+    once, twice = (case_solution(Case(task=Hold(height_m=0.8)), [trial] * times).reason for times in (1, 2))
+    assert once == f"no posture found at 0.8 m: {attempt.reason}"
+    assert twice == f"{once} (2 times)"
