@@ -101,6 +101,12 @@ def nearest_name(name: str, names: Iterable[str]) -> str:
     return f"; did you mean '{match[0]}'?" if match else ""
 
 
+def some_of(names: Iterable[str], name: str) -> str:
+    """The names that would do in place of one: a few of them where one is near, which is named beside."""
+    known = [*names]
+    return listed(known) if nearest_name(name, known) else ", ".join(known)
+
+
 def explain(error: BaseException) -> str:
     """Kind, text and last line of an exception, such as `ValueError: no root (model.py:120 in root)`.
 

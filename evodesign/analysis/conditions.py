@@ -25,7 +25,7 @@ from dataclasses import dataclass
 from functools import partial
 from operator import attrgetter
 
-from evodesign.errors import InputError, nearest_name
+from evodesign.errors import InputError, nearest_name, some_of
 from evodesign.records import SUM, Case, CaseOutcome, Evaluation, RunHeader, Task
 
 Quantity = Callable[[Evaluation], float | None]
@@ -97,7 +97,7 @@ def quantity(known: Mapping[str, Quantity], name: str, source: str) -> Quantity:
     """
     if name not in known:
         short = [each for each in known if each.count("@") < 2]
-        wanted = f"one of {', '.join(short)}"
+        wanted = f"one of {some_of(short, name)}"
         if len(short) < len(known):
             wanted += ", robot_torque@WHO@WHAT@HEIGHT, human_torque@WHO@WHAT@HEIGHT"
         raise InputError(source, "", wanted, f"'{name}'{nearest_name(name, known)}")

@@ -11,7 +11,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from evodesign.design.space import DesignSpace
-from evodesign.errors import InputError, nearest_name
+from evodesign.errors import InputError, nearest_name, some_of
 from evodesign.mechanics.agent import Agent
 from evodesign.problem.file import BoundsTable, ProblemFile
 from evodesign.problem.torque_limits import PEAK_TORQUE, refuse_unlimited_peak
@@ -84,8 +84,8 @@ def _quantity(key: str, source: ProblemSource) -> tuple[str, ObjectiveKind]:
     keys = [constraint_key(name) for name in objective_kinds()]
     quantile = re.match(r"q[1-9]\d?_", key)
     quantiles = [constraint_key(f"{quantile[0]}{name}") for name in QUANTITIES] if quantile else []
-    wanted = f"one of the keys {', '.join(keys)}"
     meant = OTHERWISE_CALLED.get(key.removesuffix("_w"), key)
+    wanted = f"one of the keys {some_of(keys, meant)}"
     raise InputError(
         source.path, f"constraints.{key}", wanted, f"'{key}'{nearest_name(meant, [*keys, *quantiles])}"
     )

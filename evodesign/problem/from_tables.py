@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from evodesign.design.parameter import DesignParameter, ParameterKind
 from evodesign.design.space import DesignSpace
-from evodesign.errors import InputError, nearest_name
+from evodesign.errors import InputError, nearest_name, some_of
 from evodesign.mechanics.contact import Ground
 from evodesign.mechanics.scene import Scene
 from evodesign.pool.base import Limits
@@ -177,8 +177,8 @@ def objectives_of(
         kind = objective_kind(name)
         if kind is None:
             known = objective_kinds()
-            wanted = f"one of {', '.join(known)}"
             meant = OTHERWISE_CALLED.get(name, name)
+            wanted = f"one of {some_of(known, meant)}"
             raise InputError(source.path, key, wanted, f"'{name}'{nearest_name(meant, known)}")
         if names.count(name) > 1:
             raise InputError(source.path, key, "each objective once", f"'{name}' twice")

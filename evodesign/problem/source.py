@@ -21,7 +21,7 @@ from typing import Any, TypeVar, get_args
 import msgspec
 import tomli_w
 
-from evodesign.errors import InputError, nearest_name, shortened
+from evodesign.errors import InputError, nearest_name, shortened, some_of
 from evodesign.files import is_there
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.meshes import mesh_texts
@@ -203,7 +203,7 @@ def _refuse_unknown_keys(raw: Any, kind: Any, source: str, prefix: str) -> None:
         if key not in fields:
             now = RENAMED.get(key)
             hint = f"; it is called '{now}' now" if now in fields else nearest_name(key, fields)
-            raise InputError(source, path, f"one of the keys {', '.join(fields)}", f"'{key}'{hint}")
+            raise InputError(source, path, f"one of the keys {some_of(fields, key)}", f"'{key}'{hint}")
         _refuse_unknown_keys(value, fields[key], source, path)
 
 

@@ -105,9 +105,9 @@ def test_every_quantity_can_be_bounded(problem: DesignProblem) -> None:
             "one of the keys robot_torque_n_m",
             "did you mean 'mass_kg'?",
         ),
-        ("mass = { upper = 65.0 }", "mass", "mass_kg", "'mass'; did you mean 'mass_kg'?"),
-        ("mass_m = { upper = 65.0 }", "mass_m", "mass_kg", "did you mean 'mass_kg'?"),
-        ("paper_cost_kg = { upper = 1.0 }", "paper_cost_kg", "mass_kg", "did you mean 'paper_cost'?"),
+        ("mass = { upper = 65.0 }", "mass", " more", "'mass'; did you mean 'mass_kg'?"),
+        ("mass_m = { upper = 65.0 }", "mass_m", "one of the keys", "did you mean 'mass_kg'?"),
+        ("paper_cost_kg = { upper = 1.0 }", "paper_cost_kg", "one of the keys", "did you mean 'paper_cost'?"),
         (
             "q90_robot_torque = { upper = 1.0 }",
             "q90_robot_torque",
@@ -253,3 +253,9 @@ def test_a_design_beyond_its_bounds_is_not_polished(evaluator: Evaluator) -> Non
     light = with_bounds(evaluator, Constraint(name="mass", unit="kg", lower=None, upper=50.0))
     with pytest.raises(InputError, match=r"meets every constraint, found .* kg above 50 kg"):
         polish(light, genome, aim_of(problem, {}, ""), 3, lambda step: None)
+
+
+def test_without_a_name_near_by_all_that_would_do_are_listed(problem: DesignProblem) -> None:
+    with pytest.raises(InputError) as caught:
+        build_problem(bounded(problem.source, "zzz = { upper = 1.0 }"))
+    assert "mass_kg, actuator_mass_kg" in caught.value.wanted
