@@ -1,7 +1,7 @@
 """A portfolio of starts: a few from which nearly every design converges to its best known optimum.
 
 Random starts hardly ever lead to the best of dozens of optima; optima of other designs do. Some quasi-random
-designs are solved from the landscape's universal starts and from a random one. Then the best optimum of
+designs are solved from the landscape's universal starts and from a few random ones. Then the best optimum of
 a design that no start serves is offered to all designs, until each is served: a start serves a design if the
 solver converges from it to within 1 % of the best optimum that any start led to. Of the offers those are kept
 that serve all together with little work. The same landscape always gets the same portfolio.
@@ -39,9 +39,9 @@ class Training:
         portfolio: the most starts that a portfolio holds.
     """
 
-    designs: int = 40
-    begun: int = 20
-    random: int = 1
+    designs: int = 48
+    begun: int = 24
+    random: int = 3
     offers: int = 24
     portfolio: int = 8
 
