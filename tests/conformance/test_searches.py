@@ -59,6 +59,27 @@ def whole_run(algorithm):
     return run(make_search(settings(algorithm)), 9)
 
 
+def asked_here(algorithm):
+    """The bits of 6 generations of genomes with one objective."""
+    search = make_search(settings(algorithm, objectives=1))
+    asked = run(search, 6, 1, lambda genome, _: Outcome((genome[0] + genome[1] ** 2,), 0.0))
+    return [[[x.hex() for x in genome] for genome in genomes] for genomes in asked]
+
+
+@cache
+def asked_elsewhere():
+    """The same of every algorithm, in another process."""
+    script = (
+        "import importlib.util, json\n"
+        f"spec = importlib.util.spec_from_file_location('there', {__file__!r})\n"
+        "there = importlib.util.module_from_spec(spec)\n"
+        "spec.loader.exec_module(there)\n"
+        "print(json.dumps({name: there.asked_here(name) for name in there.ALGORITHMS}))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True)
+    return json.loads(done.stdout)
+
+
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 class TestEverySearch:
     @pytest.mark.slow
@@ -117,23 +138,7 @@ class TestEverySearch:
 
     @pytest.mark.slow
     def test_another_process_asks_for_the_same_genomes_bit_for_bit(self, algorithm):
-        search = make_search(settings(algorithm, objectives=1))
-        asked = run(search, 6, 1, lambda genome, _: Outcome((genome[0] + genome[1] ** 2,), 0.0))
-        script = (
-            "import json\n"
-            "from evodesign.records import SearchSettings\n"
-            "from evodesign.searches.base import JOINT_STARTS, Outcome\n"
-            "from evodesign.searches.registry import make_search\n"
-            f"search = make_search(SearchSettings(algorithm={algorithm!r}, dimension=5, objectives=1,\n"
-            "    population=12, seed=1))\n"
-            "asked = []\n"
-            "for _ in range(6):\n"
-            "    asked.append(search.ask())\n"
-            "    search.tell([Outcome((g[0] + g[1] ** 2,), 0.0) for g in asked[-1]])\n"
-            "print(json.dumps([[[x.hex() for x in g] for g in genomes] for genomes in asked]))\n"
-        )
-        done = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True)
-        assert json.loads(done.stdout) == [[[x.hex() for x in g] for g in genomes] for genomes in asked]
+        assert asked_elsewhere()[algorithm] == asked_here(algorithm)
 
     def test_start_genomes_come_first(self, algorithm):
         start = ((0.5,) * 5, (0.0,) * 5, (1.0,) * 5, (0.1, 0.2, 0.3, 0.4, 0.5))
