@@ -79,13 +79,8 @@ def test_evaluations_do_not_depend_on_the_workers(
     assert remembered(tmp_path / "other") == remembered(whole[0])
 
 
-@pytest.mark.parametrize(
-    ("stop", "code"),
-    [
-        (signal.SIGKILL, -9),
-        *(pytest.param(stop, 3, marks=pytest.mark.slow) for stop in (signal.SIGINT, signal.SIGTERM)),
-    ],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("stop", "code"), [(signal.SIGKILL, -9), (signal.SIGINT, 3), (signal.SIGTERM, 3)])
 def test_stopped_search_is_resumed_as_if_nothing_had_happened(
     stop: signal.Signals, code: int, whole: tuple[Path, str, str], repository: Path, tmp_path: Path
 ) -> None:

@@ -21,18 +21,13 @@ from evodesign.simulation.pushed_plan import PushConditions, PushedDesign, Pushe
 from evodesign.tasks import Hold, Lift
 from tests.control.pendulum import Pendulum
 from tests.simulation.conftest import HEIGHT, Held
-from tests.simulation.engines import ENGINES
+from tests.simulation.engines import SLOW_IN_DRAKE
 
 
 @pytest.mark.parametrize(
-    "pendulum",
-    [
-        *(Pendulum(0.24), Pendulum(0.24, 20.0)),
-        *(pytest.param(each, marks=pytest.mark.slow) for each in (Pendulum(0.16), Pendulum(0.24, 40.0))),
-    ],
-    ids=str,
+    "pendulum", [Pendulum(0.16), Pendulum(0.24), Pendulum(0.24, 20.0), Pendulum(0.24, 40.0)], ids=str
 )
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("engine", SLOW_IN_DRAKE)
 def test_a_pendulum_survives_until_its_capture_point_leaves_the_sole(
     pendulum: Pendulum, engine: EngineName
 ) -> None:
@@ -149,7 +144,7 @@ def pushed_hold(held: Held) -> PushTest:
     return pushed(held)
 
 
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("engine", SLOW_IN_DRAKE)
 def test_a_push_is_survived_or_not_and_told_alike_each_time(held: Held, engine: EngineName) -> None:
     conditions = PushConditions(engine=engine_named(engine))
     pushed_hold = pushed(held, conditions)
