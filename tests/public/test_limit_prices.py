@@ -20,6 +20,8 @@ from evodesign.tree.urdf_read import InertiaRule, read_urdf
 from tests.posture.resolved import prices, slope, with_number
 from tests.robots import HUMANOIDS
 
+pytestmark = pytest.mark.slow
+
 WITHIN = 0.01
 
 QUICK = {"start_portfolio": False, "compile": False}
@@ -40,7 +42,6 @@ def check_prices(evaluator: Evaluator) -> None:
         assert price == pytest.approx(found, rel=WITHIN), (solution.case.name, number)
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("few_designs_meet")
 def test_prices_of_the_default_problem_agree_with_differences(repository: Path) -> None:
     """Of its highest load: with sized actuators, which keep their sizes, a disturbance, and bodies apart."""
@@ -52,7 +53,6 @@ def test_prices_of_the_default_problem_agree_with_differences(repository: Path) 
     check_prices(evaluator_of(problem, 2))
 
 
-@pytest.mark.slow
 @pytest.mark.needs_robots
 def test_prices_of_a_g1_agree_with_differences() -> None:
     urdf = HUMANOIDS["g1"]
