@@ -9,24 +9,12 @@ import numpy as np
 import pytest
 
 from evodesign.errors import InputError
-from evodesign.records import SearchSettings
 from evodesign.searches.base import JOINT_STARTS, Outcome
 from evodesign.searches.registry import ASYNCHRONOUS_SEARCHES, SEARCHES, make_asynchronous_search, make_search
+from tests.conformance.test_searches import FAILED, settings
 
 ALGORITHMS = sorted(ASYNCHRONOUS_SEARCHES)
 LEARNING = sorted(set(ASYNCHRONOUS_SEARCHES) - {"random"})
-FAILED = Outcome(None, None)
-
-
-def settings(algorithm, *, dimension=5, objectives=2, population=12, seed=1, start=()):
-    return SearchSettings(
-        algorithm=algorithm,
-        dimension=dimension,
-        objectives=objectives,
-        population=population,
-        seed=seed,
-        start=start,
-    )
 
 
 def bowls(genome, objectives):

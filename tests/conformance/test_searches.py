@@ -19,15 +19,9 @@ LEARNING = sorted(set(SEARCHES) - {"random", JOINT_STARTS})
 FAILED = Outcome(None, None)
 
 
-def settings(algorithm, *, dimension=5, objectives=2, population=12, seed=1, start=()):
-    return SearchSettings(
-        algorithm=algorithm,
-        dimension=dimension,
-        objectives=objectives,
-        population=population,
-        seed=seed,
-        start=start,
-    )
+def settings(algorithm, **changes):
+    usual = {"dimension": 5, "objectives": 2, "population": 12, "seed": 1}
+    return SearchSettings(algorithm=algorithm, **(usual | changes))
 
 
 def bowls(genome, objectives):
@@ -222,18 +216,9 @@ class TestEverySearch:
 CHOICES = (0, 3, 0, 5, 2)
 
 
-def discrete(algorithm, *, choices=CHOICES, objectives=2, seed=1, start=(), past=()):
+def discrete(algorithm, *, choices=CHOICES, **changes):
     """Settings of a search whose coordinates are discrete where there are choices."""
-    return SearchSettings(
-        algorithm=algorithm,
-        dimension=len(choices),
-        objectives=objectives,
-        population=12,
-        seed=seed,
-        start=start,
-        past=past,
-        choices=choices,
-    )
+    return settings(algorithm, dimension=len(choices), choices=choices, **changes)
 
 
 def middles(count):
