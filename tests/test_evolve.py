@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +20,7 @@ from evodesign.analysis.hypervolume import hypervolume
 from evodesign.analysis.run_state import exhausted
 from evodesign.errors import Interrupted, ResumeMismatch, RunError
 from evodesign.evolve import resume, start
-from evodesign.pool.base import Finished
+from evodesign.pool.base import Finished, Pool
 from evodesign.pool.registry import make_pool
 from evodesign.records import Evaluation, Generation, Genome, RunHeader, Status
 from evodesign.runlog.run import RunLog, read_run
@@ -181,19 +181,23 @@ def test_a_run_and_its_resumption_equal_one_longer_run_whatever_the_order_of_arr
     assert parts.header.budget == first + more
 
 
+@pytest.fixture(scope="module", params=[("serial", 1), ("joblib", 2)], ids=lambda each: each[0])
+def pool(request: pytest.FixtureRequest) -> Iterator[Pool]:
+    with make_pool(*request.param) as made:
+        yield made
+
+
 @pytest.mark.parametrize("algorithm", SEARCHES)
-@pytest.mark.parametrize("jobs", [1, 2])
 def test_every_search_of_the_registry_resumes_as_if_never_interrupted(
-    tmp_path: Path, algorithm: str, jobs: int
+    tmp_path: Path, algorithm: str, pool: Pool
 ) -> None:
     header = toy_header(population=8, budget=40, dimension=3)
     settings = msgspec.structs.replace(header.search, algorithm=algorithm)
     header = msgspec.structs.replace(header, search=settings)
     whole = start(tmp_path / "whole", header, ToyTask(header), OrderedPool(), Silent())
-    with make_pool("serial" if jobs == 1 else "joblib", jobs) as pool:
-        shorter = msgspec.structs.replace(header, budget=19)
-        start(tmp_path / "parts", shorter, ToyTask(header), pool, Silent())
-        parts = resume(tmp_path / "parts", ToyTask, pool, Silent(), 40)
+    shorter = msgspec.structs.replace(header, budget=19)
+    start(tmp_path / "parts", shorter, ToyTask(header), pool, Silent())
+    parts = resume(tmp_path / "parts", ToyTask, pool, Silent(), 40)
     assert essence(parts) == essence(whole)
 
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 import ast
 import re
 from collections import defaultdict
-from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -97,21 +97,28 @@ class Named:
         return {**INSTEAD, **own, **PLACES.get(self.package, {})}
 
 
-def modules() -> Iterator[tuple[Path, ast.Module]]:
+KINDS = {ast.ClassDef: "class", ast.FunctionDef: "function", ast.AsyncFunctionDef: "function"}
+
+
+@cache
+def read_package() -> tuple[list[Named], list[str]]:
+    """All that has a name, and the modules with a docstring that cites DESIGN, from one look at each file."""
+    named, citing = [], []
     for path in sorted(PACKAGE.rglob("*.py")):
-        yield path, ast.parse(path.read_text(encoding="utf-8"))
-
-
-def names() -> Iterator[Named]:
-    for path, tree in modules():
         place = str(path.relative_to(REPOSITORY))
         package = path.relative_to(PACKAGE).parts[0]
-        yield Named("module", path.parent.name if path.stem == "__init__" else path.stem, place, package)
-        for node in ast.walk(tree):
-            if isinstance(node, ast.ClassDef):
-                yield Named("class", node.name, f"{place}:{node.lineno}", package)
-            elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-                yield Named("function", node.name, f"{place}:{node.lineno}", package)
+        stem = path.parent.name if path.stem == "__init__" else path.stem
+        named.append(Named("module", stem, place, package))
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if kind := KINDS.get(type(node)):
+                named.append(Named(kind, node.name, f"{place}:{node.lineno}", package))
+            if isinstance(node, (ast.Module, *KINDS)) and cites(ast.get_docstring(node) or ""):
+                citing.append(place)
+    return named, citing
+
+
+def cites(docstring: str) -> bool:
+    return re.search(r"\bDESIGN\b(?!\.md)", docstring) is not None
 
 
 def stems(word: str) -> set[str]:
@@ -127,7 +134,7 @@ def faults(found: Named) -> list[str]:
 
 
 def test_names_are_words_of_the_field() -> None:
-    assert [fault for found in names() for fault in faults(found)] == []
+    assert [fault for found in read_package()[0] for fault in faults(found)] == []
 
 
 @pytest.mark.parametrize(
@@ -149,7 +156,7 @@ def test_words_are_parts_of_names(kind: str, name: str, package: str, wrong: boo
 
 def test_no_class_is_defined_twice() -> None:
     places: defaultdict[str, list[str]] = defaultdict(list)
-    for found in names():
+    for found in read_package()[0]:
         if found.kind == "class":
             places[found.name].append(found.place)
     assert {name: where for name, where in places.items() if len(where) > 1} == {}
@@ -157,15 +164,10 @@ def test_no_class_is_defined_twice() -> None:
 
 @pytest.mark.parametrize("name", ONCE)
 def test_functions_that_had_two_meanings_have_one(name: str) -> None:
-    assert len([found for found in names() if found.kind == "function" and found.name == name]) <= 1
+    named, _ = read_package()
+    assert len([found for found in named if found.kind == "function" and found.name == name]) <= 1
 
 
 def test_docstrings_cite_only_what_is_in_the_repository() -> None:
-    documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
-    citing = [
-        str(path.relative_to(REPOSITORY))
-        for path, tree in modules()
-        for node in ast.walk(tree)
-        if isinstance(node, documented) and re.search(r"\bDESIGN\b(?!\.md)", ast.get_docstring(node) or "")
-    ]
-    assert citing == []
+    assert read_package()[1] == []
+    assert cites("as DESIGN 3 has it")

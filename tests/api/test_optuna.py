@@ -19,10 +19,10 @@ from evodesign.api.run import Run
 from evodesign.errors import InputError
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source
-from evodesign.records import Evaluation, Parameter, Status
+from evodesign.records import Evaluation, Parameter
 from evodesign.runlog.run import RunLog
 from tests.api.test_pymoo import ToyProblem
-from tests.runlog.toys import toy_evaluations, toy_header
+from tests.runlog.toys import lost, toy_evaluations, toy_header
 
 HEADER = toy_header(budget=40)
 STEEL = Parameter("density.arm", 900.0, 7800.0, "kg/m^3", (900.0, 2700.0, 7800.0), ("nylon", "alu", "steel"))
@@ -36,20 +36,6 @@ def quiet() -> Iterator[None]:
     optuna.logging.set_verbosity(before)
 
 
-def failed(evaluation: Evaluation) -> Evaluation:
-    """The same evaluation, had its worker been lost."""
-    lost = msgspec.structs.replace(
-        evaluation.assessment,
-        objectives={},
-        violation=None,
-        status=Status.WORKER_LOST,
-        reason="the worker was lost",
-        reach=None,
-        cases=(),
-    )
-    return msgspec.structs.replace(evaluation, assessment=lost)
-
-
 def run_of(evaluations: list[Evaluation], header: Any = HEADER) -> Run:
     return Run(RunLog(Path("runs/toy"), header, tuple(evaluations), (), (), (), complete=True, notes=()))
 
@@ -57,7 +43,7 @@ def run_of(evaluations: list[Evaluation], header: Any = HEADER) -> Run:
 @pytest.fixture
 def run() -> Run:
     evaluations = toy_evaluations(HEADER, 40)
-    return run_of([failed(each) if each.number == 7 else each for each in evaluations])
+    return run_of([lost(each) if each.number == 7 else each for each in evaluations])
 
 
 def storages(folder: Path) -> dict[str, Any]:

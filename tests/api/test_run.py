@@ -15,9 +15,9 @@ from evodesign.analysis.front import front
 from evodesign.api.design import Design
 from evodesign.api.run import Run
 from evodesign.errors import InputError, RunError
-from evodesign.records import Evaluation, Status
+from evodesign.records import Evaluation
 from evodesign.runlog.writer import RunWriter
-from tests.runlog.toys import toy_detail, toy_evaluations, toy_header
+from tests.runlog.toys import lost, toy_detail, toy_evaluations, toy_header
 
 HEADER = toy_header(budget=30)
 RUN = toy_evaluations(HEADER, 30)
@@ -141,20 +141,6 @@ def written(directory: Path, evaluations: list[Evaluation]) -> Run:
         for evaluation in evaluations:
             writer.evaluation(evaluation)
     return evodesign.open_run(directory)
-
-
-def lost(evaluation: Evaluation) -> Evaluation:
-    """The same evaluation, had its worker been lost."""
-    failed = msgspec.structs.replace(
-        evaluation.assessment,
-        objectives={},
-        violation=None,
-        status=Status.WORKER_LOST,
-        reason="the worker was lost",
-        reach=None,
-        cases=(),
-    )
-    return msgspec.structs.replace(evaluation, assessment=failed)
 
 
 @pytest.mark.parametrize("kind", ["of all kinds", "all infeasible", "one that failed", "empty", "damaged"])

@@ -13,17 +13,10 @@ from hypothesis import strategies as st
 from evodesign.body.inertia import Inertia, total
 from evodesign.body.placement import Placement, matrix_from_rpy, multiply, rpy_from_matrix, transpose
 from evodesign.body.shape import Box, Cylinder, Shape, Solid, Sphere
+from tests.pitches import pitches
 
 sizes = st.floats(0.05, 2.0)
 angles = st.floats(-3.0, 3.0)
-upright = st.sampled_from([-math.pi / 2, math.pi / 2])
-nearly_upright = st.builds(
-    lambda pitch, side, exponent: pitch + side * 10.0**exponent,
-    upright,
-    st.sampled_from([-1.0, 1.0]),
-    st.floats(-17.0, -2.0),
-)
-pitches = st.floats(-1.5, 1.5) | upright | nearly_upright
 coordinates = st.floats(-1.0, 1.0)
 shapes = st.one_of(
     st.builds(Sphere, sizes), st.builds(Cylinder, sizes, sizes), st.builds(Box, sizes, sizes, sizes)

@@ -12,6 +12,8 @@ import pytest
 
 from tests.cli.here import evodesign
 
+pytestmark = pytest.mark.slow
+
 COMMAND = [sys.executable, "-c", "from evodesign.__main__ import main; main()"]
 
 
@@ -47,7 +49,6 @@ def cold(quick: Path) -> tuple[dict, str]:
     return evaluate(quick, {"EVODESIGN_CACHE": str(quick.parent / "cache")})
 
 
-@pytest.mark.slow
 def test_cache_does_not_change_an_answer(quick: Path, cold: tuple[dict, str]) -> None:
     warm, second = evaluate(quick, {"EVODESIGN_CACHE": str(quick.parent / "cache")})
     assert "ready" not in cold[1] + second
@@ -55,7 +56,6 @@ def test_cache_does_not_change_an_answer(quick: Path, cold: tuple[dict, str]) ->
 
 
 @pytest.mark.needs_compiler
-@pytest.mark.slow
 def test_without_a_compiler_ipopt_finds_the_same(quick: Path, cold: tuple[dict, str], tmp_path: Path) -> None:
     ipopt, _ = evaluate(quick, {"EVODESIGN_CACHE": str(tmp_path / "without"), "CC": "/nowhere/cc"})
     assert cold[0]["objectives"] == pytest.approx(ipopt["objectives"], rel=1e-6)
@@ -66,7 +66,6 @@ def test_without_a_compiler_ipopt_finds_the_same(quick: Path, cold: tuple[dict, 
     assert not list((tmp_path / "without").glob("functions/*"))
 
 
-@pytest.mark.slow
 def test_symmetry_can_be_chosen_on_the_command_line(quick: Path) -> None:
     answers = {}
     for symmetry in ("on", "polish"):
@@ -78,7 +77,6 @@ def test_symmetry_can_be_chosen_on_the_command_line(quick: Path) -> None:
     assert answers["polish"]["robot"]["torque_norm"] != answers["on"]["robot"]["torque_norm"]
 
 
-@pytest.mark.slow
 def test_unknown_symmetry_is_refused(quick: Path) -> None:
     done = evodesign("evaluate", quick, "--symmetry", "polsh")
     assert done.returncode == 2
@@ -88,7 +86,6 @@ def test_unknown_symmetry_is_refused(quick: Path) -> None:
     )
 
 
-@pytest.mark.slow
 def test_asymmetric_design_is_solved_whole_with_a_note_and_refused_where_symmetry_is_asked_for(
     quick: Path, tmp_path: Path
 ) -> None:
@@ -103,7 +100,6 @@ def test_asymmetric_design_is_solved_whole_with_a_note_and_refused_where_symmetr
     assert "--symmetry: wanted 'auto', 'off', or a scene that is its own mirror image" in done.stderr
 
 
-@pytest.mark.slow
 def test_figures_of_a_design_need_no_search(quick: Path, cold: tuple[dict, str], tmp_path: Path) -> None:
     place = tmp_path / "new" / "figures"
     _, said = evaluate(quick, {"EVODESIGN_CACHE": str(quick.parent / "cache")}, "--plot", str(place))
@@ -116,7 +112,6 @@ def test_figures_of_a_design_need_no_search(quick: Path, cold: tuple[dict, str],
     assert "point-grasp, unscaled: postures from the" in title
 
 
-@pytest.mark.slow
 def test_a_place_for_figures_that_cannot_be_made_is_refused_before_anything_is_solved(
     quick: Path, tmp_path: Path
 ) -> None:
@@ -126,7 +121,6 @@ def test_a_place_for_figures_that_cannot_be_made_is_refused_before_anything_is_s
     assert "--plot: wanted a folder that can be written" in done.stderr
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("height", "code", "statuses"), [(1.45, 5, {"infeasible"}), (0.8, 0, {"solved"})])
 def test_the_exit_code_says_whether_any_case_is_solved(
     height: float, code: int, statuses: set[str], repository: Path, tmp_path: Path

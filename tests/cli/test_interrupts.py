@@ -99,7 +99,11 @@ def test_a_search_that_is_interrupted_says_whether_it_can_be_resumed(
     check(interrupted(["search", "point-grasp", "--run", run, *sizes], delays), run)
 
 
-@pytest.mark.parametrize("delays", [(0.03,), (0.1, 0.1), (0.4,), (0.6, 0.0)], ids=str)
+@pytest.mark.parametrize(
+    "delays",
+    [*(pytest.param(each, marks=pytest.mark.slow) for each in ((0.03,), (0.4,))), (0.1, 0.1), (0.6, 0.0)],
+    ids=str,
+)
 @pytest.mark.parametrize("command", ["front", "report"])
 def test_a_look_at_a_run_ends_with_130_or_is_done(
     command: str, delays: Sequence[float], tmp_path: Path

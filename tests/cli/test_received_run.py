@@ -249,7 +249,7 @@ ASSESSES = ("resume with more", "polish")
     ("make", "refusing", "others"),
     [
         (own_search, SEARCHES, ("show", "polish")),
-        (own_objective, ASSESSES, ("show", "resume", "verify", "branch")),
+        pytest.param(own_objective, ASSESSES, ("show", "resume", "verify", "branch"), marks=pytest.mark.slow),
     ],
 )
 def test_code_that_a_received_run_names_is_not_executed(

@@ -20,6 +20,8 @@ from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
 from tests.cli.here import evodesign
 
+pytestmark = pytest.mark.slow
+
 POPULATION, BUDGET, ENDLESS = 4, 12, 4000
 COMMAND = [sys.executable, "-c", "from evodesign.__main__ import main; main()"]
 
@@ -57,7 +59,6 @@ def whole(
     return run, done.stdout, done.stderr
 
 
-@pytest.mark.slow
 def test_search_prints_its_front_and_where_the_run_lies(whole: tuple[Path, str, str]) -> None:
     run, stdout, stderr = whole
     assert str(run) in stdout
@@ -70,7 +71,6 @@ def test_search_prints_its_front_and_where_the_run_lies(whole: tuple[Path, str, 
     assert f"{BUDGET}/{BUDGET} evaluations" in lines[-1]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("workers", [("--pool", "serial"), ("--pool", "joblib", "--jobs", "1")])
 def test_evaluations_do_not_depend_on_the_workers(
     workers: tuple[str, ...], whole: tuple[Path, str, str], repository: Path, tmp_path: Path
@@ -79,13 +79,7 @@ def test_evaluations_do_not_depend_on_the_workers(
     assert remembered(tmp_path / "other") == remembered(whole[0])
 
 
-@pytest.mark.parametrize(
-    ("stop", "code"),
-    [
-        (signal.SIGKILL, -9),
-        *(pytest.param(stop, 3, marks=pytest.mark.slow) for stop in (signal.SIGINT, signal.SIGTERM)),
-    ],
-)
+@pytest.mark.parametrize(("stop", "code"), [(signal.SIGKILL, -9), (signal.SIGINT, 3), (signal.SIGTERM, 3)])
 def test_stopped_search_is_resumed_as_if_nothing_had_happened(
     stop: signal.Signals, code: int, whole: tuple[Path, str, str], repository: Path, tmp_path: Path
 ) -> None:
@@ -112,7 +106,6 @@ def test_stopped_search_is_resumed_as_if_nothing_had_happened(
     assert remembered(run)[:BUDGET] == remembered(whole[0])
 
 
-@pytest.mark.slow
 def test_larger_budget_continues_the_same_search(
     whole: tuple[Path, str, str], repository: Path, tmp_path: Path
 ) -> None:
@@ -122,7 +115,6 @@ def test_larger_budget_continues_the_same_search(
     assert remembered(run) == remembered(whole[0])
 
 
-@pytest.mark.slow
 def test_a_branch_begins_with_the_past_and_is_verified_like_any_run(
     whole: tuple[Path, str, str], tmp_path: Path
 ) -> None:
@@ -137,7 +129,6 @@ def test_a_branch_begins_with_the_past_and_is_verified_like_any_run(
     assert (found["sound"], found["evaluations"], found["segments"]) == (True, 14, 2)
 
 
-@pytest.mark.slow
 def test_a_run_of_other_versions_is_refused_unless_accepted(
     whole: tuple[Path, str, str], tmp_path: Path
 ) -> None:
@@ -155,7 +146,6 @@ def test_a_run_of_other_versions_is_refused_unless_accepted(
     assert remembered(tmp_path / "old") == remembered(whole[0])
 
 
-@pytest.mark.slow
 def test_plain_mcap_reader_reads_the_finished_run(whole: tuple[Path, str, str]) -> None:
     topics: dict[str, int] = {}
     with (whole[0] / "000.mcap").open("rb") as stream:
@@ -173,7 +163,6 @@ def test_plain_mcap_reader_reads_the_finished_run(whole: tuple[Path, str, str]) 
     assert topics == {"/run": 1, "/evaluation": BUDGET, "/generation": generations, "/front": generations}
 
 
-@pytest.mark.slow
 def test_run_cut_anywhere_gives_what_had_arrived_before_the_cut(
     whole: tuple[Path, str, str], tmp_path: Path
 ) -> None:
@@ -190,7 +179,6 @@ def test_run_cut_anywhere_gives_what_had_arrived_before_the_cut(
     assert lengths[-1] == BUDGET
 
 
-@pytest.mark.slow
 def test_front_as_json_holds_its_designs(whole: tuple[Path, str, str], tmp_path: Path) -> None:
     plot = tmp_path / "front.html"
     found = json.loads(evodesign("front", whole[0], "--json", "--plot", plot).stdout)
@@ -202,7 +190,6 @@ def test_front_as_json_holds_its_designs(whole: tuple[Path, str, str], tmp_path:
     assert "Plotly" in plot.read_text()
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("known")
 def test_evaluate_answers_in_full(repository: Path) -> None:
     problem = repository / "problems" / "point_grasp.toml"
@@ -224,7 +211,6 @@ def test_evaluate_answers_in_full(repository: Path) -> None:
         assert max(height["residuals"].values()) < 1e-5
 
 
-@pytest.mark.slow
 def test_check_shows_what_each_parameter_changes(repository: Path) -> None:
     problem = repository / "problems" / "point_grasp.toml"
     found = json.loads(evodesign("check", problem, "--json").stdout)

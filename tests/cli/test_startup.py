@@ -6,8 +6,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 from evodesign.evolve import start
 from evodesign.runlog.session_log import Silent
 from tests.faults.synthetic import synthetic_header
@@ -32,12 +30,16 @@ def test_a_problem_is_read_without_readers_of_meshes_until_it_shows_one() -> Non
     assert loaded(code, READERS) == "[]\n"
 
 
-@pytest.mark.parametrize("command", ["front", "verify", "watch --once", "merge", "recover", "compare"])
-def test_a_run_is_looked_at_without_a_solver(command: str, tmp_path: Path) -> None:
+def test_a_run_is_looked_at_without_a_solver(tmp_path: Path) -> None:
+    """Commands one after the other, and what has been loaded after each: the first that loads one is seen."""
     header = synthetic_header(budget=20, seed=4, population=10)
-    runs = [tmp_path / "run", tmp_path / "other"][: 1 + (command == "compare")]
-    for run in runs:
-        start(run, header, ToyTask(header), OrderedPool(shuffled(1)), Silent())
-    arguments = ["evodesign", *command.split(), *map(str, runs)]
-    code = f"sys.argv = {arguments}\nfrom evodesign.cli.main import app\napp(standalone_mode=False)"
+    for run in ("run", "other"):
+        start(tmp_path / run, header, ToyTask(header), OrderedPool(shuffled(1)), Silent())
+    lines = [f"{command} run" for command in ("front", "verify", "watch --once", "merge", "recover")]
+    code = (
+        f"import os\nos.chdir({str(tmp_path)!r})\nfrom evodesign.cli.main import app\n"
+        f"for line in {[*lines, 'compare run other']}:\n"
+        "    app(line.split(), standalone_mode=False)\n"
+        f"    assert not {set(HEAVY)} & set(sys.modules), line"
+    )
     assert loaded(code, HEAVY).endswith("[]\n")

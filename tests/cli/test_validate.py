@@ -21,6 +21,8 @@ from evodesign.validation.holds import ComparedHold, compare_holds, hold_differe
 from evodesign.validation.measured import shipped_cases
 from evodesign.validation.posed import Posed
 
+pytestmark = pytest.mark.slow
+
 PAGE = Path(__file__).parents[2] / "docs" / "trust.md"
 
 Found = dict[tuple[str, str], tuple[Agreement | None, ...]]
@@ -47,7 +49,6 @@ def of(found: Found, lift: str, quantity: str) -> tuple[Agreement, ...]:
     return tuple(each for each in ways if each is not None)
 
 
-@pytest.mark.slow
 def test_statics_in_measured_postures_give_what_the_plate_gives(found: Found) -> None:
     """As changes from standing, so that markers a few centimetres off count twice and cancel."""
     back, *_ = of(found, "box lift", "L5/S1, change from standing")
@@ -61,7 +62,6 @@ def test_statics_in_measured_postures_give_what_the_plate_gives(found: Found) ->
     assert 0.95 <= stoop.slope <= 1.2
 
 
-@pytest.mark.slow
 def test_a_predicted_back_carries_about_what_it_carries_in_reality(found: Found) -> None:
     """Least torque gives a seventh to a fifth."""
     for lift, quantity in (("box lift", "L5/S1, change from standing"), ("stoop lift", "L5/S1")):
@@ -73,7 +73,6 @@ def test_a_predicted_back_carries_about_what_it_carries_in_reality(found: Found)
         assert measured.off < least.off / 2.0
 
 
-@pytest.mark.slow
 def test_predicted_angles_are_about_as_far_off_as_men_differ(found: Found) -> None:
     _, measured, least = found["box lift", "five angles"]
     assert measured is not None
@@ -82,7 +81,6 @@ def test_predicted_angles_are_about_as_far_off_as_men_differ(found: Found) -> No
     assert least.off >= 30.0
 
 
-@pytest.mark.slow
 def test_every_case_that_holds_the_load_has_both_predictions(compared: list[ComparedCase]) -> None:
     held = [each for each in compared if each.case.hands == "box"]
     assert len(held) == 32
@@ -90,7 +88,6 @@ def test_every_case_that_holds_the_load_has_both_predictions(compared: list[Comp
     assert all(set(each.predicted) == set(HumanPosture) for each in held)
 
 
-@pytest.mark.slow
 def test_still_holds_stay_near_the_mean(holds: list[ComparedHold]) -> None:
     off = hold_differences(holds, HumanPosture.MEASURED)
     assert len(holds) == 11
@@ -106,7 +103,6 @@ def printed(compared: Sequence[ComparedCase], holds: Sequence[ComparedHold]) -> 
     return console.file.getvalue()  # type: ignore[attr-defined]
 
 
-@pytest.mark.slow
 def test_tables_fit_eighty_columns_without_a_second_part(
     compared: list[ComparedCase], holds: list[ComparedHold]
 ) -> None:
@@ -119,7 +115,6 @@ def test_tables_fit_eighty_columns_without_a_second_part(
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 
 
-@pytest.mark.slow
 def test_the_page_shows_what_the_command_prints(
     compared: list[ComparedCase], holds: list[ComparedHold]
 ) -> None:
@@ -132,7 +127,6 @@ def test_the_page_shows_what_the_command_prints(
         assert float(there) == pytest.approx(float(here), rel=0.03, abs=3.0)
 
 
-@pytest.mark.slow
 def test_slope_and_difference_of_made_up_figures(compared: list[ComparedCase]) -> None:
     """Moments twice those measured: slope 2, and the root mean square of what was measured."""
     stoop = [each for each in compared if (each.case.lift, each.case.hands) == ("stoop lift", "box")]

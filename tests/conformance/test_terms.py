@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import casadi as ca
@@ -17,7 +18,7 @@ from evodesign.mechanics.disturbance import Disturbance, Disturbances, PushedAt
 from evodesign.mechanics.payload import Grasp, GraspDirection
 from evodesign.mechanics.scene import Scene
 from evodesign.nlp.program import Program
-from evodesign.posture.assemble import CaseSymbols, Embodied, assemble
+from evodesign.posture.assemble import Assembly, CaseSymbols, Embodied, assemble
 from evodesign.posture.check import TOLERANCE, AgentModel, Checker
 from evodesign.posture.limit_groups import Enforced, LimitGroup
 from evodesign.posture.symmetry import Form, symmetric_forms, whole
@@ -83,19 +84,40 @@ def forms(request: pytest.FixtureRequest, problem: DesignProblem) -> tuple[Form,
     return symmetric_forms(scene) if request.param == "half" else (whole(scene.robot), whole(scene.human))
 
 
-def program_of(scene: Scene, forms: tuple[Form, Form], terms: Mapping[str, BodyTerm | SystemTerm]) -> Program:
+def assembled(scene: Scene, forms: tuple[Form, Form]) -> Assembly:
     parties = (Embodied(forms[0], scene.robot.tree), Embodied(forms[1], scene.human.tree))
-    made = assemble(parties, terms.values(), CaseSymbols(scene, (HEIGHT,)), EVERY_ROW)
+    return assemble(parties, TERMS.values(), CaseSymbols(scene, (HEIGHT,)), EVERY_ROW)
+
+
+def program_of(made: Assembly) -> Program:
     return Program("all", made.variables, made.constraints, ca.SX(0.0), {})
 
 
-def seen_rows(
-    term: BodyTerm | SystemTerm, scene: Scene, forms: tuple[Form, Form]
-) -> Iterator[tuple[str, Row]]:
-    """The rows of a term in the undisturbed load case, with the name of whom they are about."""
-    parties = (Embodied(forms[0], scene.robot.tree), Embodied(forms[1], scene.human.tree))
+@dataclass(frozen=True)
+class Posed:
+    """The scene with everything in it, assembled once for all terms and seeds."""
+
+    scene: Scene
+    forms: tuple[Form, Form]
+    made: Assembly
+    undisturbed: Assembly
+
+    @cached_property
+    def program(self) -> Program:
+        return program_of(self.made)
+
+
+@pytest.fixture(scope="module")
+def posed(problem: DesignProblem, forms: tuple[Form, Form]) -> Posed:
+    scene = scene_of(problem)
     undisturbed = replace(scene, disturbances=Disturbances())
-    load_case = assemble(parties, TERMS.values(), CaseSymbols(undisturbed, (HEIGHT,)), EVERY_ROW).undisturbed
+    return Posed(scene, forms, assembled(scene, forms), assembled(undisturbed, forms))
+
+
+def seen_rows(term: BodyTerm | SystemTerm, posed: Posed) -> Iterator[tuple[str, Row]]:
+    """The rows of a term in the undisturbed load case, with the name of whom they are about."""
+    undisturbed, forms = replace(posed.scene, disturbances=Disturbances()), posed.forms
+    load_case = posed.undisturbed.undisturbed
     if isinstance(term, BodyTerm):
         for name, body in load_case.bodies.items():
             yield from ((f"{name}.", row) for row in term.rows(body))
@@ -113,21 +135,16 @@ def test_registry_and_terms_agree_on_names() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
-def test_rows_say_what_the_residuals_say(problem: DesignProblem, forms: tuple[Form, Form], seed: int) -> None:
+def test_rows_say_what_the_residuals_say(posed: Posed, seed: int) -> None:
     """At random values of all variables, in every load case: another library finds the same violations."""
-    scene = scene_of(problem)
-    program = program_of(scene, forms, TERMS)
+    scene, program, forms = posed.scene, posed.program, posed.forms
     values = random_values(program, np.random.default_rng(seed))
     rows = ca.Function("rows", [program.symbols], [c.expression for c in program.constraints])
     numbers = rows(program.packed(values))
     instant = instants_of(layout_of(program), forms, scene, values)[0]
     checker = checker_of(scene)
     found = {residual.name: residual for residual in checker.residuals(instant, HEIGHT)}
-    said = {
-        f"{owner}{row.name}": (owner, row)
-        for t in TERMS.values()
-        for owner, row in seen_rows(t, scene, forms)
-    }
+    said = {f"{owner}{row.name}": (owner, row) for t in TERMS.values() for owner, row in seen_rows(t, posed)}
     measured: dict[str, float] = {}
     compared = set()
     for constraint, number in zip(program.constraints, numbers, strict=True):
@@ -171,7 +188,7 @@ def test_every_residual_fires(problem: DesignProblem) -> None:
     """Each of every term, undisturbed and not, for some random posture; no residual is always silent."""
     scene, seen = scene_of(problem), set[str]()
     forms = (whole(scene.robot), whole(scene.human))
-    program = program_of(scene, forms, TERMS)
+    program = program_of(assembled(scene, forms))
     checker = checker_of(scene)
     silent: set[str] = set()
     for seed in range(12):
@@ -192,7 +209,7 @@ def test_every_residual_fires(problem: DesignProblem) -> None:
 def test_a_point_grasp_that_passes_a_moment_is_seen(problem: DesignProblem) -> None:
     scene = problem.scene
     forms = (whole(scene.robot), whole(scene.human))
-    program = program_of(scene, forms, TERMS)
+    program = program_of(assembled(scene, forms))
     values = random_values(program, np.random.default_rng(1))
     instant = instants_of(layout_of(program), forms, scene, values)[0]
     robot = instant.postures[ROBOT]
@@ -208,7 +225,7 @@ def test_torques_beyond_their_limits_are_seen(problem: DesignProblem) -> None:
     robot = replace(problem.scene.robot, torque_limits={joint: 1.0}, limits_torques=True)
     scene = problem.scene.with_agents(robot)
     forms = (whole(robot), whole(scene.human))
-    program = program_of(scene, forms, TERMS)
+    program = program_of(assembled(scene, forms))
     values = random_values(program, np.random.default_rng(1))
     values["robot.torques"] = np.full(len(robot.joints), 3.5)
     instant = instants_of(layout_of(program), forms, scene, values)[0]
@@ -219,14 +236,9 @@ def test_torques_beyond_their_limits_are_seen(problem: DesignProblem) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", TERMS)
-def test_derivatives_of_a_term_agree_with_differences(
-    name: str, problem: DesignProblem, forms: tuple[Form, Form]
-) -> None:
+def test_derivatives_of_a_term_agree_with_differences(name: str, posed: Posed) -> None:
     """Rows and costs of one term, with respect to every variable, at random values."""
-    scene = scene_of(problem)
-    program = program_of(scene, forms, TERMS)
-    parties = (Embodied(forms[0], scene.robot.tree), Embodied(forms[1], scene.human.tree))
-    made = assemble(parties, TERMS.values(), CaseSymbols(scene, (HEIGHT,)), EVERY_ROW)
+    scene, program, forms, made = posed.scene, posed.program, posed.forms, posed.made
     term, (undisturbed, *_) = TERMS[name], made.instants[0]
     if isinstance(term, BodyTerm):
         said = [part for body in undisturbed.bodies.values() for part in parts_of(term, body)]
@@ -269,12 +281,9 @@ SAID = {LimitGroup.STANCE, LimitGroup.CONTACT, LimitGroup.JOINT_LIMITS, LimitGro
 
 
 @pytest.mark.parametrize("name", TERMS)
-def test_rows_with_limits_say_which_these_are(
-    problem: DesignProblem, forms: tuple[Form, Form], name: str
-) -> None:
+def test_rows_with_limits_say_which_these_are(posed: Posed, name: str) -> None:
     """In words, and in units that a price can be per; those of the stance with their keys."""
-    scene = scene_of(problem)
-    for _, row in seen_rows(TERMS[name], scene, forms):
+    for _, row in seen_rows(TERMS[name], posed):
         for limit, bounds in ((row.lower, row.least), (row.upper, row.most)):
             if row.lower == row.upper or not np.isfinite(limit) or row.group not in SAID:
                 continue

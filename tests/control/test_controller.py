@@ -22,7 +22,7 @@ from evodesign.simulation.controlled import ControlledScene, Timing, hand_share
 from evodesign.simulation.engine import engine_named
 from evodesign.simulation.installed import EngineName
 from tests.simulation.conftest import HEIGHT, Held
-from tests.simulation.engines import ENGINES
+from tests.simulation.engines import SLOW_IN_DRAKE
 
 LIMIT = 60.0
 
@@ -108,7 +108,7 @@ def test_a_controller_that_finds_no_torques_says_so_in_a_sentence(held: Held) ->
         assert not each.torques.any()
 
 
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("engine", SLOW_IN_DRAKE)
 @pytest.mark.parametrize("grasp", Grasp)
 def test_a_hold_without_a_push_is_the_static_plan(
     held_with: Callable[[Grasp], Held], grasp: Grasp, engine: EngineName

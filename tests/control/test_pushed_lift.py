@@ -32,6 +32,7 @@ def tests_in(lifted: Lifted, course: LiftCourse) -> dict[str, PushTest]:
     return PushedDesign((plan,)).tests(PushConditions(Feedback()))
 
 
+@pytest.mark.slow
 def test_a_lift_is_pushed_at_a_third_and_at_two_thirds_of_its_time_on_its_path(
     tests_in: dict[str, PushTest], course: LiftCourse
 ) -> None:

@@ -11,6 +11,8 @@ import pytest
 
 from tests.report.page.chromium import Tab, browser
 
+pytestmark = pytest.mark.slow
+
 FIRST = {
     "constraint": "docs/recipes/constraint",
     "people": "docs/recipes/people",
@@ -54,7 +56,6 @@ def tab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
         yield opened
 
 
-@pytest.mark.slow
 def test_the_search_finds_what_people_look_for_and_no_change(site: Path, tab: Tab) -> None:
     for words, page in FIRST.items():
         tab.open(f"file://{site}/search.html?q={words}")
@@ -64,7 +65,6 @@ def test_the_search_finds_what_people_look_for_and_no_change(site: Path, tab: Ta
         assert not any(name.startswith("CHANGELOG") for name in found), words
 
 
-@pytest.mark.slow
 def test_pages_set_formulas_and_load_nothing_from_elsewhere(site: Path, tab: Tab) -> None:
     for page in ("index", "docs/model", "docs/recipes/index"):
         tab.open(f"file://{site}/{page}.html")

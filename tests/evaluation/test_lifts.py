@@ -36,6 +36,8 @@ from evodesign.records import Assessed, Assessment, CaseDetail, Hold, InstantDet
 from evodesign.report.replay.recording import timed
 from evodesign.violations import missed_height
 
+pytestmark = pytest.mark.slow
+
 TABLE = 'from_m = 0.8\nto_m = 1.2\nseconds = 1.5\nprofile = "minimum_jerk"'
 TORQUE = '"robot_torque"'
 MINIMISE = '"robot_torque", "worst_robot_torque", "energy", "worst_robot_power", "worst_l5s1_moment"'
@@ -113,7 +115,6 @@ def drawn(instant: InstantDetail) -> float:
     return sum(max(robot.torques_n_m[name] * speed, 0.0) for name, speed in robot.speeds_rad_s.items())
 
 
-@pytest.mark.slow
 def test_a_hold_and_a_lift_are_cases_and_share_the_hold_at_the_beginning(moving: Moving) -> None:
     lift = Lift(0.9, 1.1, 1.5, knots=8)
     assert [solution.case.task for solution in moving.result.cases] == [Hold(height_m=0.9), lift]
@@ -123,7 +124,6 @@ def test_a_hold_and_a_lift_are_cases_and_share_the_hold_at_the_beginning(moving:
     assert task_names(moving.result.cases[1].case)["profile"] == "minimum_jerk"
 
 
-@pytest.mark.slow
 def test_the_log_holds_knots_and_moments_between_with_their_times(logged: CaseDetail) -> None:
     assert [instant.time_s for instant in logged.instants] == pytest.approx(np.linspace(0.0, 1.5, 15))
     heights = [moment.height_m for moment in logged.moments]
@@ -133,7 +133,6 @@ def test_the_log_holds_knots_and_moments_between_with_their_times(logged: CaseDe
     assert heights == sorted(heights)
 
 
-@pytest.mark.slow
 def test_the_speeds_in_the_log_are_those_of_its_positions(logged: CaseDetail) -> None:
     times = np.array([instant.time_s for instant in logged.instants])
     for agent in ("robot", "human"):
@@ -144,7 +143,6 @@ def test_the_speeds_in_the_log_are_those_of_its_positions(logged: CaseDetail) ->
             assert np.trapezoid(speeds, times) == pytest.approx(at[-1] - at[0], abs=0.02)
 
 
-@pytest.mark.slow
 def test_objectives_follow_from_the_logged_instants(moving: Moving, logged: CaseDetail) -> None:
     found, times = moving.assessed.assessment.objectives, [each.time_s for each in logged.instants]
     norms, powers = [norm(each) for each in logged.instants], [drawn(each) for each in logged.instants]
@@ -161,7 +159,6 @@ def test_objectives_follow_from_the_logged_instants(moving: Moving, logged: Case
     assert outcome.robot_torque_norm == pytest.approx(max(norms))
 
 
-@pytest.mark.slow
 def test_the_robot_draws_what_it_gives_to_the_load_and_to_itself(moving: Moving, logged: CaseDetail) -> None:
     """Work of all joints, positive less negative, is the energy that bodies and load gain."""
     scene, result = moving.problem.scene, moving.result
@@ -193,14 +190,12 @@ def _height_of_mass(model: AgentModel, posture: AgentPosture) -> float:
     return float(pin.centerOfMass(body, body.createData(), model.at(posture).coordinates)[2])
 
 
-@pytest.mark.slow
 def test_a_replay_shows_a_lift_in_real_time(moving: Moving) -> None:
     shown = [time / 1e9 for time, _ in timed(moving.assessed.cases)]
     assert shown[0] == 0.0, "the hold, for two seconds"
     assert shown[1:] == pytest.approx([2.0 + time for time in np.linspace(0.0, 1.5, 15)])
 
 
-@pytest.mark.slow
 def test_a_slow_lift_needs_the_torques_of_holds_in_its_postures(repository: Path) -> None:
     """Without inertia torques are those of gravity; the first and the last hold are no worse."""
     table = "from_m = 0.9\nto_m = 1.1\nseconds = 60.0\nknots = 6\n\n[task]\nheights_m = [0.9, 1.1]"
@@ -224,7 +219,6 @@ def pushed(repository: Path) -> Moving:
     return Moving.of(changed(repository, (TABLE, table), ("[objectives]", push), (TORQUE, MINIMISE)))
 
 
-@pytest.mark.slow
 def test_a_lift_under_a_disturbance_is_a_case_of_its_own(pushed: Moving) -> None:
     """Objectives follow from what the log holds of both, at every instant."""
     found, (case,) = pushed.assessed.assessment.objectives, pushed.assessed.cases
@@ -256,7 +250,6 @@ def test_a_lift_under_a_disturbance_is_a_case_of_its_own(pushed: Moving) -> None
     assert outcome.disturbed["pushed"]["robot"] == pytest.approx(max(norms[1]))
 
 
-@pytest.mark.slow
 def test_a_height_out_of_reach_is_missed_by_a_lift_as_by_a_hold(repository: Path) -> None:
     high = Moving.of(changed(repository, (TABLE, "from_m = 0.9\nto_m = 2.5")))
     (case,) = high.result.cases
@@ -269,7 +262,6 @@ def test_a_height_out_of_reach_is_missed_by_a_lift_as_by_a_hold(repository: Path
     assert assessment.objectives.keys() == {"reach_height"}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
@@ -299,7 +291,6 @@ def quick(repository: Path) -> Moving:
     return Moving.of(text)
 
 
-@pytest.mark.slow
 def test_least_times_are_objectives_and_constraints_and_have_gradients(quick: Moving) -> None:
     """The mean and the largest of those of both lifts; both ways to a gradient agree."""
     assert quick.timed
@@ -325,38 +316,27 @@ def test_least_times_are_objectives_and_constraints_and_have_gradients(quick: Mo
         assert [along[each] * spans[each] for each in spans] == pytest.approx(expected, abs=1e-8)
 
 
-@pytest.mark.slow
 def test_least_times_are_looked_for_only_where_something_asks(moving: Moving) -> None:
     assert not moving.timed
     assert all(case.least_seconds is None for case in moving.result.cases[1:])
     assert objective_value("lift_seconds", moving.result) is None
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["energy", "worst_lift_seconds"])
-def test_energy_and_least_time_need_a_lift(name: str, problem: DesignProblem) -> None:
-    text = problem.source.text.replace('"human_torque"', f'"{name}"')
-    with pytest.raises(InputError, match=rf"a \[\[task\.lift\]\] for '{name}', found none"):
-        build_problem(msgspec.structs.replace(problem.source, text=text))
-
-
-@pytest.mark.slow
 def test_a_name_that_is_no_objective_is_refused_with_the_nearest(repository: Path) -> None:
     with pytest.raises(InputError, match=r"found 'peak_power'; did you mean 'worst_robot_power'\?"):
         changed(repository, (TORQUE, '"peak_power"'))
 
 
-@pytest.mark.slow
-def test_energy_needs_a_lift(problem: DesignProblem) -> None:
-    text = problem.source.text.replace('"human_torque"', '"energy"')
-    with pytest.raises(InputError, match=r"a \[\[task\.lift\]\] for 'energy', found none"):
-        build_problem(msgspec.structs.replace(problem.source, text=text))
+def test_energy_and_least_time_need_a_lift(problem: DesignProblem) -> None:
+    for name in ("energy", "worst_lift_seconds"):
+        text = problem.source.text.replace('"human_torque"', f'"{name}"')
+        with pytest.raises(InputError, match=rf"a \[\[task\.lift\]\] for '{name}', found none"):
+            build_problem(msgspec.structs.replace(problem.source, text=text))
     text = problem.source.text.replace("heights_m = [0.8, 1.0, 1.2]", "")
     with pytest.raises(InputError, match=r"task: wanted heights_m, a \[\[task\.lift\]\], or both"):
         build_problem(msgspec.structs.replace(problem.source, text=text))
 
 
-@pytest.mark.slow
 def test_what_is_for_loads_held_still_is_refused(repository: Path) -> None:
     lifting = changed(repository)
     with pytest.raises(InputError, match=r"search\.algorithm: wanted another where a load is lifted"):
@@ -365,7 +345,6 @@ def test_what_is_for_loads_held_still_is_refused(repository: Path) -> None:
         refuse_unsuited(lifting)
 
 
-@pytest.mark.slow
 def test_gradients_under_a_disturbance_are_those_of_differences_along_the_tangent(pushed: Moving) -> None:
     """The quick chain rule over instants against whole tangents; tests/motion has those of the motion."""
     derivatives = Sensitivities(pushed.problem, inner=pushed.solver.inner)
@@ -411,7 +390,6 @@ def neighbours(
     return found
 
 
-@pytest.mark.slow
 def test_gradients_of_every_objective_are_those_of_solves_of_neighbours(repository: Path) -> None:
     """Central differences at two steps, extrapolated to none (Richardson), of two designs.
 

@@ -27,7 +27,9 @@ from evodesign.tree.urdf_write import urdf_text
 from tests.oracles.published import published_robots
 from tests.tree.crane import crane
 
-CASES = 120
+pytestmark = pytest.mark.slow
+
+CASES = 40
 RELATIVE = 1e-10
 
 
@@ -127,7 +129,6 @@ def both(request: pytest.FixtureRequest, problem: DesignProblem) -> list[tuple[C
     return [(case, ours(case), oracle(case)) for case in request.param(problem)]
 
 
-@pytest.mark.slow
 def test_frames_stand_where_pinocchio_puts_them(both) -> None:
     for case, (poses, *_), (model, data, _) in both:
         for frame in case.tree.link_by_name:
@@ -136,7 +137,6 @@ def test_frames_stand_where_pinocchio_puts_them(both) -> None:
             assert np.allclose(np.array(poses[frame].rotation), placed.rotation, atol=RELATIVE)
 
 
-@pytest.mark.slow
 def test_torques_by_cutting_are_gravity_minus_transposed_jacobian_times_wrenches(both) -> None:
     for case, (_, torques, force, moment, _), (model, _, rows) in both:
         columns = [model.joints[model.getJointId(name)].idx_v for name in case.tree.actuated]
@@ -147,7 +147,6 @@ def test_torques_by_cutting_are_gravity_minus_transposed_jacobian_times_wrenches
         assert np.allclose(base_in_world.T @ moment, -rows[3:6], atol=RELATIVE * scale)
 
 
-@pytest.mark.slow
 def test_mass_and_centre_of_mass_agree(both) -> None:
     for case, (*_, center), (model, data, _) in both:
         mass = sum(link.inertia.mass for link in case.tree.links)

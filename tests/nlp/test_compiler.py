@@ -201,6 +201,7 @@ def test_the_method_ends_at_the_bits_of_the_machines_compiler(
 
 
 @pytest.mark.needs_compiler
+@pytest.mark.slow
 @pytest.mark.usefixtures("optimising")
 def test_a_posture_has_the_bits_of_the_machines_compiler(
     problem: DesignProblem, request: pytest.FixtureRequest

@@ -28,8 +28,8 @@ REASONS = {
 }
 
 
-def header_of(algorithm: str, population: int, budget: int) -> RunHeader:
-    toy = toy_header(population=population, budget=budget, seed=3)
+def header_of(algorithm: str, population: int, budget: int, seed: int = 3) -> RunHeader:
+    toy = toy_header(population=population, budget=budget, seed=seed)
     settings = msgspec.structs.replace(toy.search, algorithm=algorithm, start=())
     return msgspec.structs.replace(toy, search=settings)
 
@@ -44,7 +44,7 @@ def pool(request: pytest.FixtureRequest) -> Iterator[Pool]:
 def test_every_tenth_design_kills_every_tenth_hangs_every_tenth_is_not_a_number(
     pool: Pool, tmp_path: Path
 ) -> None:
-    header = header_of("random", population=20, budget=60)
+    header = header_of("random", population=20, budget=40, seed=8)  # of which three hang
     calls = tmp_path / "calls"
     factory = Faulty(header.parameters, str(calls), Limits(seconds=5.0))
     run = start(tmp_path / "run", header, factory, pool, Silent())
@@ -84,7 +84,6 @@ class Trouble(Silent):
                 cluster.add_worker("--no-nanny")
 
 
-@pytest.mark.slow
 def test_workers_and_a_scheduler_that_come_and_go_change_nothing(tmp_path: Path) -> None:
     header = header_of("nsga2", population=24, budget=120)
     alone = start(tmp_path / "alone", header, Slow(header.parameters, 0.0), SerialPool(), Silent())

@@ -91,7 +91,10 @@ def norms(solution: CaseSolution) -> tuple[float, float]:
     return solution.postures[ROBOT].torque_norm, solution.postures[HUMAN].torque_norm
 
 
-@pytest.mark.parametrize(("height", "symmetric"), [(0.8, True), (1.0, True), (1.2, True), (1.2, False)])
+@pytest.mark.parametrize(
+    ("height", "symmetric"),
+    [(1.0, True), (1.2, False), *(pytest.param(each, True, marks=pytest.mark.slow) for each in (0.8, 1.2))],
+)
 @pytest.mark.parametrize(("moment", "close"), [(0.0, 1e-4), (1e-3, 0.05)])
 def test_rigid_grasps_without_moments_and_with_an_equal_share_are_point_grasps(
     height: float, symmetric: bool, moment: float, close: float, problem: DesignProblem

@@ -54,7 +54,7 @@ def settings(weights: TaskWeights, enforced: Enforced = LIMITS, *, symmetric: bo
 
 
 @pytest.mark.parametrize("symmetry", [Symmetry.ON, Symmetry.OFF])
-@pytest.mark.parametrize("design", [0, 1])
+@pytest.mark.parametrize("design", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_with_the_design_held_the_joint_optimum_is_that_of_the_postures(
     paper: DesignProblem, symmetry: Symmetry, design: int
 ) -> None:

@@ -51,6 +51,8 @@ from evodesign.records import Hold, Status
 from evodesign.tree.kinematics import Pose
 from evodesign.tree.model import Link, Look, Tree
 
+pytestmark = pytest.mark.slow
+
 MARGIN = 0.005
 SHAPES: tuple[Shape, ...] = (Sphere(0.06), Cylinder(0.05, 0.3), Box(0.1, 0.24, 0.16), Cylinder(0.08, 0.05))
 
@@ -90,7 +92,6 @@ def tree_of(shape: Shape) -> Tree:
     return Tree("one", (link(shape),), ())
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("one", SHAPES)
 @pytest.mark.parametrize("other", SHAPES)
 def test_the_best_direction_parts_bodies_as_far_as_they_are_apart(one: Shape, other: Shape) -> None:
@@ -106,7 +107,6 @@ def test_the_best_direction_parts_bodies_as_far_as_they_are_apart(one: Shape, ot
         assert found > 0.0 or apart < 0.01
 
 
-@pytest.mark.slow
 def test_supports_reach_as_far_as_the_points_of_a_shape() -> None:
     rng = np.random.default_rng(2)
     circle = np.linspace(0.0, 2.0 * np.pi, 721)
@@ -125,7 +125,6 @@ def test_supports_reach_as_far_as_the_points_of_a_shape() -> None:
             assert farthest - 2e-6 <= rounded <= farthest + ROUNDING * np.abs(points).max(axis=0).sum()
 
 
-@pytest.mark.slow
 def test_what_fits_a_mesh_holds_all_of_its_points() -> None:
     from evodesign.collision.supports import _least
 
@@ -177,7 +176,6 @@ def met(apart: DesignProblem) -> dict:
     return {(name, ""): tuple(pairs) for name, pairs in found.items()}
 
 
-@pytest.mark.slow
 def test_pairs_that_come_near_are_found_without_being_named(met: dict, apart: DesignProblem) -> None:
     checked = {agent.name: agent.collisions.checked for agent in apart.scene.agents}
     assert ("l_foot_front", "r_foot_front") in met["robot", ""]
@@ -190,7 +188,6 @@ def test_pairs_that_come_near_are_found_without_being_named(met: dict, apart: De
     assert ("l_foot_front", FLOOR) not in checked["robot"]
 
 
-@pytest.mark.slow
 def test_what_meets_at_corners_of_the_space_is_found_too(
     apart: DesignProblem, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -211,7 +208,6 @@ def test_what_meets_at_corners_of_the_space_is_found_too(
     assert finder.held(apart.tasks[:1]) < everywhere
 
 
-@pytest.mark.slow
 def test_links_are_as_far_apart_as_in_the_world(apart: DesignProblem) -> None:
     """Every pair of links of the person, placed in the frame of a link that carries both and in the world."""
     human, scene = apart.scene.human, apart.scene
@@ -257,7 +253,6 @@ def test_links_are_as_far_apart_as_in_the_world(apart: DesignProblem) -> None:
         assert np.allclose(relative, world, atol=1e-12)
 
 
-@pytest.mark.slow
 def test_derivatives_of_rows_are_differences_of_rows(met: dict, apart: DesignProblem) -> None:
     scene = with_meetings(apart.scene, met)
     program = robot_reach_program(symmetric_forms(scene)[0], replace(setting_of(apart), scene=scene))
@@ -288,7 +283,6 @@ def test_derivatives_of_rows_are_differences_of_rows(met: dict, apart: DesignPro
         assert np.allclose(exact[:, column], difference, atol=1e-6)
 
 
-@pytest.mark.slow
 def test_the_posture_at_the_end_of_reach_fits_programs_that_part_other_bodies(
     apart: DesignProblem, met: dict
 ) -> None:
@@ -302,7 +296,6 @@ def test_the_posture_at_the_end_of_reach_fits_programs_that_part_other_bodies(
     assert solved.values.keys() >= start.keys()
 
 
-@pytest.mark.slow
 def test_no_bodies_of_a_solved_posture_overlap(
     problem: DesignProblem, apart: DesignProblem, met: dict
 ) -> None:
@@ -322,7 +315,6 @@ def test_no_bodies_of_a_solved_posture_overlap(
     assert changed > 0
 
 
-@pytest.mark.slow
 def test_a_solution_stays_without_the_rows_that_do_not_hold_it(apart: DesignProblem, met: dict) -> None:
     """With every row on, and with those that are needed: the same posture; without those, another one."""
     setting = replace(setting_of(apart), scene=with_meetings(apart.scene, met))
@@ -343,7 +335,6 @@ def test_a_solution_stays_without_the_rows_that_do_not_hold_it(apart: DesignProb
     assert solver.near.solve(parameters, bare).cost < found.cost - 1e-3
 
 
-@pytest.mark.slow
 def test_postures_in_which_bodies_overlap_are_told(problem: DesignProblem, apart: DesignProblem) -> None:
     """Those of the problem without rows, by the checkers of the one that asks for parted bodies."""
     values = tuple(problem.space.unscaled(problem.scene.robot.tree))
@@ -361,7 +352,6 @@ def test_postures_in_which_bodies_overlap_are_told(problem: DesignProblem, apart
     assert DesignCheckers(problem.scene, problem.space).of(values).overlaps(case.instants, (1.0,)) == [[]]
 
 
-@pytest.mark.slow
 def test_bodies_that_are_wider_than_their_shapes_are_parted_farther(apart: DesignProblem, met: dict) -> None:
     """A check to which the chest reaches 0.2 m farther: the hands' rows ask for so much more."""
     scene, task, wide = with_meetings(apart.scene, met), Hold(height_m=1.0), 0.2
@@ -389,7 +379,6 @@ def test_bodies_that_are_wider_than_their_shapes_are_parted_farther(apart: Desig
     assert formulation.cleared(values, found, task, always).status is not Status.SOLVED
 
 
-@pytest.mark.slow
 def test_bodies_that_no_row_keeps_apart_are_no_matter_of_the_method(
     problem: DesignProblem, apart: DesignProblem
 ) -> None:
@@ -405,7 +394,6 @@ def test_bodies_that_no_row_keeps_apart_are_no_matter_of_the_method(
         assert {attempt.method for attempt in case.attempts} == {problem.options.method}
 
 
-@pytest.mark.slow
 def test_the_lowest_load_is_higher_where_bodies_are_kept_apart(
     problem: DesignProblem, apart: DesignProblem, met: dict
 ) -> None:
@@ -418,7 +406,6 @@ def test_the_lowest_load_is_higher_where_bodies_are_kept_apart(
     assert through < around < 0.8
 
 
-@pytest.mark.slow
 def test_costs_of_postures_that_rows_hold_move_as_their_derivatives_say(
     apart: DesignProblem, met: dict
 ) -> None:
@@ -444,7 +431,6 @@ def test_costs_of_postures_that_rows_hold_move_as_their_derivatives_say(
     assert compared >= 7
 
 
-@pytest.mark.slow
 def test_another_way_is_worth_what_the_rows_it_relaxes_cost(apart: DesignProblem, met: dict) -> None:
     """Rows loosened by a little: the lowest load moves by their price times that."""
     setting = replace(setting_of(apart), scene=with_meetings(apart.scene, met))
@@ -465,7 +451,6 @@ def test_another_way_is_worth_what_the_rows_it_relaxes_cost(apart: DesignProblem
     assert costs[0] - costs[1] == pytest.approx(2e-4 * prices.sum(), rel=1e-2)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", [ROBOT, HUMAN])
 def test_signs_are_those_of_coal_in_random_postures(name: str, apart: DesignProblem, met: dict) -> None:
     """Clear where coal finds 10 mm, and never farther apart than coal finds, in 1,000 postures of each."""

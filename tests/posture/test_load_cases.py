@@ -27,6 +27,7 @@ from evodesign.posture.terms.base import TORQUE_UNIT
 from evodesign.posture.warm_start import start_from
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Case, Hold, Status
+from tests.posture.test_joint import shifted
 from tests.posture.violations import violations
 
 HEAVIER = Disturbance("heavier", mass_share=0.2)
@@ -189,19 +190,6 @@ def test_growing_disturbances_never_lower_the_worst_case_optimum(seed: int, prob
     assert costs[0] > costs[1] > costs[2]
 
 
-def changed(posture: AgentPosture, part: str) -> AgentPosture:
-    """The posture with one part of it wrong by a little."""
-    first = next(iter(posture.joints))
-    push = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
-    changes = {
-        "joints": {"joints": {**posture.joints, first: posture.joints[first] + 0.01}},
-        "torques": {"torques": {**posture.torques, first: posture.torques[first] + 0.01}},
-        "hand": {"wrenches": {**posture.wrenches, "left_hand": posture.wrenches["left_hand"] + push}},
-        "foot": {"wrenches": {**posture.wrenches, "left_foot": posture.wrenches["left_foot"] * -1.0}},
-    }
-    return replace(posture, **changes[part])
-
-
 @pytest.mark.parametrize("agent", [ROBOT, HUMAN])
 @pytest.mark.parametrize(
     ("part", "residual"),
@@ -213,7 +201,7 @@ def test_the_check_sees_what_is_wrong_under_a_disturbance(
     scene = disturbed(problem, *EVERY)
     checker = checker_of(scene, problem, problem.space.unscaled(scene.robot.tree))
     name = AWAY.name
-    wrong = {**borne.disturbed[name], agent: changed(borne.disturbed[name][agent], part)}
+    wrong = {**borne.disturbed[name], agent: shifted(borne.disturbed[name][agent], part)}
     found = violations(checker, borne.postures, HEIGHT, {**borne.disturbed, name: wrong})
     assert found[f"{name}: {agent}.{residual}"] > TOLERANCE
     assert all(size <= TOLERANCE for key, size in found.items() if not key.startswith(name))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -10,15 +12,16 @@ from pathlib import Path
 import pinocchio as pin
 import pytest
 
-from benchmarks.clear_robots import ROBOTS, guessed, nearest, solved
+from benchmarks.clear_robots import ROBOTS, nearest, solved
 from benchmarks.independent_overlaps import Body, overlaps
 from evodesign.collision.pairs import JOINED, STILL
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.factory import cached_precomputed
 from evodesign.mechanics.agent import ROBOT
 from evodesign.pool.worker import SerialPool
-from evodesign.problem.build import DesignProblem
+from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.collisions import may_overlap
+from evodesign.problem.source import read_source
 from evodesign.tree.mesh_write import mesh_files
 from evodesign.tree.urdf_write import urdf_text
 
@@ -30,10 +33,18 @@ DEEPEST = 0.003
 
 @pytest.fixture(scope="module")
 def problem_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], DesignProblem]:
-    """What `init` writes for a robot; to find its pairs takes as long as to hold the load."""
-    return cache(lambda name: guessed(ROBOTS[name], tmp_path_factory.mktemp(name))[1])
+    """What `init` writes for a robot, with the tests' cache of compiled functions."""
+
+    def found(name: str) -> DesignProblem:
+        file = tmp_path_factory.mktemp(name) / "robot.toml"
+        init = [sys.executable, "-m", "evodesign", "init", str(ROBOTS[name]), "--to", str(file)]
+        subprocess.run(init, check=True, capture_output=True)
+        return build_problem(read_source(file))
+
+    return cache(found)
 
 
+@pytest.mark.usefixtures("few_designs_meet")
 def test_a_robot_of_which_nothing_is_said_holds_the_load_without_overlap(
     problem_of: Callable[[str], DesignProblem],
 ) -> None:

@@ -14,6 +14,8 @@ import pinocchio as pin
 import pytest
 from lxml import etree
 
+from evodesign.guess.body_plan import body_plan
+from evodesign.guess.parameters import groups
 from evodesign.guess.problem_text import guessed_problem
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import source_of
@@ -50,8 +52,7 @@ def configuration(model: pin.Model, base: np.ndarray, positions: dict[str, float
 def test_a_robot_written_unscaled_is_the_original(name: str) -> None:
     original_text = Path(HUMANOIDS[name]).read_text(encoding="utf-8")
     tree = read_urdf(original_text, name, InertiaRule.FILE)
-    lengths = tomllib.loads(guessed_problem(tree, "robot.urdf").text)["design"]["length"]
-    grown = {link for each in lengths for link in each["links"]}
+    grown = {link for each in groups(body_plan(tree)) for link in each.links}
     links = [link.name for link in tree.links if link.name in grown and link.inertia.mass]
     unscaled = resize(tree, dict.fromkeys(links, 1.0), {})
     original, written = model_of(original_text), model_of(urdf_text(unscaled))

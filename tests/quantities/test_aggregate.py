@@ -16,6 +16,8 @@ from evodesign.problem.source import read_source
 from evodesign.quantities.design_result import DesignResult
 from evodesign.quantities.objectives import objective_kind, objective_value
 
+pytestmark = pytest.mark.slow
+
 TALL = 'stature_m = 1.9\nmass_kg = 85.0\nsex = "male"\n'
 SHORT = 'name = "short"\nstature_m = 1.6\nmass_kg = 60.0\nsex = "female"\n'
 LIGHT = "size_m = [0.5, 0.5, 0.025]\nmass_kg = 5.0\n"
@@ -65,7 +67,6 @@ def alone(tmp_path_factory: pytest.TempPathFactory, repository: Path) -> list[De
     ]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["robot_torque", "human_torque"])
 def test_an_objective_over_all_cases_is_made_of_what_each_gives_alone(
     name: str, everyone: DesignResult, alone: list[DesignResult]
@@ -81,7 +82,6 @@ def test_an_objective_over_all_cases_is_made_of_what_each_gives_alone(
     )
 
 
-@pytest.mark.slow
 def test_one_more_person_never_improves_the_worst_case(
     tmp_path: Path, repository: Path, everyone: DesignResult
 ) -> None:
@@ -93,7 +93,6 @@ def test_one_more_person_never_improves_the_worst_case(
         assert after >= before * (1.0 - 1e-6)
 
 
-@pytest.mark.slow
 def test_the_reach_is_that_of_the_load_that_is_hardest_to_hold(
     everyone: DesignResult, alone: list[DesignResult]
 ) -> None:
@@ -102,7 +101,6 @@ def test_the_reach_is_that_of_the_load_that_is_hardest_to_hold(
     assert everyone.reach.lowest == max(reach.lowest for reach in reaches if reach.lowest is not None)
 
 
-@pytest.mark.slow
 def test_people_and_loads_are_named_where_there_are_several(
     tmp_path: Path, repository: Path, everyone: DesignResult, alone: list[DesignResult]
 ) -> None:
@@ -114,7 +112,6 @@ def test_people_and_loads_are_named_where_there_are_several(
     assert b"_name" not in msgspec.json.encode(single)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["q0_robot_torque", "q100_robot_torque", "q50_mass", "q_robot_torque", "best_mass"]
 )
@@ -122,7 +119,6 @@ def test_other_ways_over_cases_are_no_objectives(name: str) -> None:
     assert objective_kind(name) is None
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("people", "loads", "found"),
     [
@@ -143,7 +139,6 @@ def test_one_of_several_people_or_loads_is_refused_by_its_place(
     assert found in str(refused.value)
 
 
-@pytest.mark.slow
 def test_the_joint_problem_is_for_one_person_and_one_load(tmp_path: Path, repository: Path) -> None:
     with pytest.raises(InputError, match="one person and one load in the joint problem, found 2 pairs"):
         Baseline(built(tmp_path, repository, [TALL, SHORT], [LIGHT]))

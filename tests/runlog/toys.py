@@ -237,3 +237,17 @@ def essence(run: RunLog) -> tuple[list[Evaluation], list[Generation], tuple[Fron
         [msgspec.structs.replace(each, seconds=0.0) for each in run.generations],
         run.fronts,
     )
+
+
+def lost(evaluation: Evaluation) -> Evaluation:
+    """The same evaluation, had its worker been lost."""
+    failed = msgspec.structs.replace(
+        evaluation.assessment,
+        objectives={},
+        violation=None,
+        status=Status.WORKER_LOST,
+        reason="the worker was lost",
+        reach=None,
+        cases=(),
+    )
+    return msgspec.structs.replace(evaluation, assessment=failed)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 import pytest
@@ -47,6 +48,7 @@ def sloped(genome: Genome) -> Outcome:
     )
 
 
+@cache
 def best_of_kinds(
     algorithm: str, assess: Assess, generations: int = 40, seed: int = 1
 ) -> dict[tuple[int, int], float]:

@@ -20,23 +20,16 @@ from evodesign.tree.model import Joint, JointKind, Link, Look, Tree
 from evodesign.tree.urdf_read import InertiaRule, read_urdf
 from evodesign.tree.urdf_write import UNLIMITED, urdf_text
 from tests.oracles.pinocchio_model import carried_inertia, carriers, floating_model
+from tests.pitches import pitches
 
 TOLERANCE = 1e-12
 INFINITE = math.inf
 
 angle = st.floats(-math.pi, math.pi)
-upright = st.sampled_from([-math.pi / 2, math.pi / 2])
-nearly_upright = st.builds(
-    lambda pitch, side, exponent: pitch + side * 10.0**exponent,
-    upright,
-    st.sampled_from([-1.0, 1.0]),
-    st.floats(-17.0, -2.0),
-)
-pitch = st.floats(-1.5, 1.5) | upright | nearly_upright
 length = st.floats(0.01, 1.0)
 offset = st.floats(-1.0, 1.0)
 placements = st.builds(
-    Placement.from_xyz_rpy, st.tuples(offset, offset, offset), st.tuples(angle, pitch, angle)
+    Placement.from_xyz_rpy, st.tuples(offset, offset, offset), st.tuples(angle, pitches, angle)
 )
 shapes = (
     st.builds(Sphere, length) | st.builds(Cylinder, length, length) | st.builds(Box, length, length, length)

@@ -12,6 +12,8 @@ from evodesign.nlp.native.program_code import HERE, METHOD_FILES, program_text
 from tests.machine import memory_sanitizer
 from tests.nlp.native.programs import random_program
 
+pytestmark = pytest.mark.slow
+
 SANITIZED = ("-std=gnu11", "-g", "-O1", "-fno-sanitize-recover=all")
 
 ZEROED = "memset(system, 0, sizeof(double) * p->system_starts[s->unknowns]);"
@@ -19,7 +21,6 @@ ZEROED = "memset(system, 0, sizeof(double) * p->system_starts[s->unknowns]);"
 KINDS = pytest.mark.parametrize("convex", [True, False], ids=["convex", "curved"])
 
 
-@pytest.mark.slow
 @pytest.mark.needs_compiler
 @KINDS
 def test_addresses_and_operations_are_sound(convex: bool, tmp_path: Path) -> None:
@@ -29,14 +30,12 @@ def test_addresses_and_operations_are_sound(convex: bool, tmp_path: Path) -> Non
     assert_solved(done)
 
 
-@pytest.mark.slow
 @pytest.mark.needs_clang
 @KINDS
 def test_no_number_is_used_before_it_is_written(convex: bool, tmp_path: Path) -> None:
     assert_solved(watched([*memory_sanitizer(), "-fsanitize-memory-track-origins"], tmp_path, convex=convex))
 
 
-@pytest.mark.slow
 @pytest.mark.needs_clang
 def test_a_number_that_was_never_written_is_noticed(tmp_path: Path) -> None:
     """The sanitizer sees into the method's own memory: it misses what is left out."""

@@ -23,6 +23,8 @@ from evodesign.tree.model import Tree
 from tests.report.cad.reread import Part, explored, measured, parts_in
 from tests.report.cad.robots import axes_at_zero, designed, frames_at_zero, in_pinocchio
 
+pytestmark = pytest.mark.slow
+
 WITHIN = 0.02
 """By how much STEP files and URDF may differ; without seats they differ by less than 1e-6."""
 
@@ -49,7 +51,6 @@ def inertia_of(part: Part, mass: float) -> pinocchio.Inertia:
     return pinocchio.Inertia(mass, center, about_center * (mass / volume))
 
 
-@pytest.mark.slow
 def test_links_read_back_weigh_what_the_urdf_says(robot: tuple[Tree, dict[str, bytes]]) -> None:
     """Walls at their density from STEP, filling over the outer shape, motors as the mass model has them.
 
@@ -101,7 +102,6 @@ def test_links_read_back_weigh_what_the_urdf_says(robot: tuple[Tree, dict[str, b
     assert compared > 20
 
 
-@pytest.mark.slow
 def test_every_link_motor_and_axis_is_a_product_at_its_place(
     robot: tuple[Tree, dict[str, bytes]], assembly: dict[str, Part]
 ) -> None:
@@ -141,7 +141,6 @@ def ends_of(axis: Part) -> list[np.ndarray]:
     return [axis.place[:3, :3] @ [p.X(), p.Y(), p.Z()] + axis.place[:3, 3] for p in points]
 
 
-@pytest.mark.slow
 def test_another_library_sees_the_same_assembly(robot: tuple[Tree, dict[str, bytes]], tmp_path: Path) -> None:
     """cascadio and trimesh: names, places and volumes of the STEP file, and those of the STL files."""
     tree, files = robot
@@ -164,7 +163,6 @@ def test_another_library_sees_the_same_assembly(robot: tuple[Tree, dict[str, byt
         np.testing.assert_allclose(alone.bounds, 1000.0 * mesh.bounds, atol=0.15)
 
 
-@pytest.mark.slow
 def test_the_readme_tells_every_link_with_its_difference(robot: tuple[Tree, dict[str, bytes]]) -> None:
     tree, files = robot
     readme = files["README.md"].decode()

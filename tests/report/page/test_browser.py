@@ -25,7 +25,7 @@ from tests.report.page.reading import CANVAS, SHOWN_WITHIN, check_poses, open_pa
 from tests.runlog.toys import toy_evaluations, toy_header
 from tests.tree.crane import crane
 
-pytestmark = pytest.mark.needs_chromium
+pytestmark = [pytest.mark.needs_chromium, pytest.mark.slow]
 
 PLOT = "document.getElementById('front')"
 SHOWN = "document.getElementById('card-title').textContent"
@@ -58,7 +58,6 @@ def front_of(run: RunLog) -> dict[int, Any]:
     return {each.number: each.assessment for each in front(run.header.objectives, run.evaluations)}
 
 
-@pytest.mark.slow
 def test_front_draws_every_design_of_it_in_2d_and_3d(page: Tab, real_run: RunLog) -> None:
     assert trace(page, "front") == list(front_of(real_run))
     assert trace(page, "unscaled") == [0]
@@ -68,7 +67,6 @@ def test_front_draws_every_design_of_it_in_2d_and_3d(page: Tab, real_run: RunLog
     assert trace(page, "unscaled") == [0]
 
 
-@pytest.mark.slow
 def test_brushing_a_parameter_changes_the_fronts_selection(page: Tab, real_run: RunLog) -> None:
     track = "document.querySelector('[data-axis=\"length.thigh\"] .track')"
     left, top, width, height = page.place(track)
@@ -86,7 +84,6 @@ def test_brushing_a_parameter_changes_the_fronts_selection(page: Tab, real_run: 
     assert trace(page, "front") == list(front_of(real_run))
 
 
-@pytest.mark.slow
 def test_drawing_a_frame_into_the_front_selects_and_clearing_takes_it_away(
     page: Tab, real_run: RunLog
 ) -> None:
@@ -104,7 +101,6 @@ def test_drawing_a_frame_into_the_front_selects_and_clearing_takes_it_away(
     assert trace(page, "front") == list(front_of(real_run))
 
 
-@pytest.mark.slow
 def test_brush_moves_by_keyboard(page: Tab) -> None:
     page.value("document.querySelector('[data-axis=\"length.thigh\"] input').focus()")
     page.key("ArrowRight")
@@ -113,7 +109,6 @@ def test_brush_moves_by_keyboard(page: Tab) -> None:
     assert high == 1.8
 
 
-@pytest.mark.slow
 def test_clicking_a_point_shows_its_card(page: Tab, real_run: RunLog) -> None:
     marked = page.value("window.evodesign.content.marks.map(mark => mark.number)")
     shown = page.value("window.evodesign.state.selected")
@@ -133,7 +128,6 @@ def test_clicking_a_point_shows_its_card(page: Tab, real_run: RunLog) -> None:
         assert page.value(cell) == shown_as(value)
 
 
-@pytest.mark.slow
 def test_every_point_of_the_front_shows_its_robot(page: Tab, real_run: RunLog) -> None:
     for number in front_of(real_run):
         page.value(f"window.evodesign.select({number})")
@@ -155,7 +149,6 @@ def crowded_run(directory: Path) -> RunLog:
     return read_run(directory)
 
 
-@pytest.mark.slow
 def test_a_click_on_a_marked_design_selects_it_whatever_lies_behind(chromium: Tab, tmp_path: Path) -> None:
     run = crowded_run(tmp_path / "run")
     open_run(chromium, run)
@@ -172,7 +165,6 @@ def test_a_click_on_a_marked_design_selects_it_whatever_lies_behind(chromium: Ta
     assert chromium.complaints() == []
 
 
-@pytest.mark.slow
 def test_a_click_on_a_disc_of_the_front_selects_that_one_and_not_what_it_hides(
     chromium: Tab, tmp_path: Path
 ) -> None:
@@ -187,7 +179,6 @@ def test_a_click_on_a_disc_of_the_front_selects_that_one_and_not_what_it_hides(
     chromium.wait_for(f"{SHOWN} === 'Design {number}'")
 
 
-@pytest.mark.slow
 def test_the_nearest_bodies_of_the_posture_that_is_shown_are_told(page: Tab) -> None:
     told = page.value(
         "(() => { const { content, state } = window.evodesign, design = content.designs[state.selected];"
@@ -201,7 +192,6 @@ def test_the_nearest_bodies_of_the_posture_that_is_shown_are_told(page: Tab) -> 
     assert ("overlap by" if told["distance_m"] < -1e-4 else "apart") in text
 
 
-@pytest.mark.slow
 def test_arrow_keys_walk_along_the_front(page: Tab, real_run: RunLog) -> None:
     before = page.value(SHOWN)
     page.value(f"{PLOT}.focus()")
@@ -212,7 +202,6 @@ def test_arrow_keys_walk_along_the_front(page: Tab, real_run: RunLog) -> None:
     assert int(page.value(SHOWN).removeprefix("Design ")) in front_of(real_run)
 
 
-@pytest.mark.slow
 def test_moving_the_height_slider_moves_the_posture(page: Tab, real_run: RunLog) -> None:
     number = page.value("window.evodesign.state.selected")
     before = page.value(f"{CANVAS}.toDataURL()")
@@ -228,7 +217,6 @@ def test_moving_the_height_slider_moves_the_posture(page: Tab, real_run: RunLog)
     assert page.value(cell) == f"{force:.1f}"
 
 
-@pytest.mark.slow
 def test_posture_comes_back_after_a_design_without_one(page: Tab, real_run: RunLog) -> None:
     first = page.value("window.evodesign.state.selected")
     drawn = page.value(f"{CANVAS}.toDataURL()")
@@ -241,7 +229,6 @@ def test_posture_comes_back_after_a_design_without_one(page: Tab, real_run: RunL
     page.wait_for(f"{CANVAS}.toDataURL() === {json.dumps(drawn)}")
 
 
-@pytest.mark.slow
 def test_links_stand_where_our_kinematics_puts_them(
     page: Tab, problem: DesignProblem, real_run: RunLog
 ) -> None:
@@ -258,7 +245,6 @@ def test_links_stand_where_our_kinematics_puts_them(
             check_poses(page, script, tree, posture.agents[name], turn, within=SHOWN_WITHIN)
 
 
-@pytest.mark.slow
 def test_slides_and_oblique_axes_move_as_in_our_kinematics(page: Tab, problem: DesignProblem) -> None:
     tree = crane()
     robot = problem.scene.robot
@@ -276,7 +262,6 @@ def test_slides_and_oblique_axes_move_as_in_our_kinematics(page: Tab, problem: D
     check_poses(page, f"window.evodesign.linkPoses('robot', {given[0]}, {given[1]})", tree, posture, 0.0)
 
 
-@pytest.mark.slow
 def test_table_lists_the_front_as_the_log_has_it(page: Tab, real_run: RunLog) -> None:
     rows = page.value(
         "[...document.querySelectorAll('#table tbody tr')].map(r => [...r.children].map(c => c.textContent))"
@@ -289,7 +274,6 @@ def test_table_lists_the_front_as_the_log_has_it(page: Tab, real_run: RunLog) ->
     assert page.value(SHOWN) == f"Design {rows[0][0]}"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("system", "other"), [("light", "dark"), ("dark", "light")])
 def test_page_follows_the_system_until_told_otherwise(
     chromium: Tab, real_page: Path, system: str, other: str
@@ -301,7 +285,6 @@ def test_page_follows_the_system_until_told_otherwise(
     assert chromium.value(theme) == other
 
 
-@pytest.mark.slow
 def test_everything_that_can_be_operated_has_a_name(page: Tab) -> None:
     nameless = page.value(
         "[...document.querySelectorAll('button, input, select, canvas[role], .plot')].filter(e =>"
@@ -311,7 +294,6 @@ def test_everything_that_can_be_operated_has_a_name(page: Tab) -> None:
     assert nameless == []
 
 
-@pytest.mark.slow
 def test_laptop_width_needs_no_sideways_scrolling(page: Tab) -> None:
     for width in (1280, 1024, 600):
         page.resize(width, 800)
@@ -354,13 +336,11 @@ def toy_run(
     return read_run(directory)
 
 
-@pytest.mark.slow
 def test_empty_run_says_so(chromium: Tab, tmp_path: Path) -> None:
     open_run(chromium, toy_run(tmp_path / "run", 0))
     assert "holds no evaluation yet" in chromium.value("document.body.innerText")
 
 
-@pytest.mark.slow
 def test_run_without_feasible_design_opens_the_nearest(chromium: Tab, tmp_path: Path) -> None:
     run = toy_run(tmp_path / "run", 40, feasible=False)
     open_run(chromium, run)
@@ -371,14 +351,12 @@ def test_run_without_feasible_design_opens_the_nearest(chromium: Tab, tmp_path: 
     assert chromium.value(SHOWN) == f"Design {nearest.number}"
 
 
-@pytest.mark.slow
 def test_one_objective_is_drawn_over_the_evaluations(chromium: Tab, tmp_path: Path) -> None:
     open_run(chromium, toy_run(tmp_path / "run", 40, objectives=1))
     assert chromium.value(f"{PLOT}.layout.xaxis.title.text") == "evaluation [number]"
     assert len(trace(chromium, "front")) == 1
 
 
-@pytest.mark.slow
 def test_five_objectives_offer_any_three_as_axes(chromium: Tab, tmp_path: Path) -> None:
     run = toy_run(tmp_path / "run", 60, objectives=5)
     open_run(chromium, run)
@@ -386,7 +364,6 @@ def test_five_objectives_offer_any_three_as_axes(chromium: Tab, tmp_path: Path) 
     assert chromium.value("document.querySelectorAll('#axis-across [label=Results] option').length") == 5
 
 
-@pytest.mark.slow
 def test_names_are_shown_as_text(chromium: Tab, tmp_path: Path) -> None:
     open_run(chromium, toy_run(tmp_path / "run", 40, objectives=5, title=NAME))
     assert chromium.value("document.getElementById('title').textContent") == NAME
@@ -396,7 +373,6 @@ def test_names_are_shown_as_text(chromium: Tab, tmp_path: Path) -> None:
     assert not [event for event in chromium.events if event["method"] == "Page.javascriptDialogOpening"]
 
 
-@pytest.mark.slow
 def test_run_cut_by_a_crash_shows_what_is_there_with_a_note(
     chromium: Tab, tmp_path: Path, real_run: RunLog
 ) -> None:
@@ -407,7 +383,6 @@ def test_run_cut_by_a_crash_shows_what_is_there_with_a_note(
     assert chromium.value("document.getElementById('card-title') !== null")
 
 
-@pytest.mark.slow
 def test_browser_without_webgl_says_what_it_cannot_draw(
     real_page: Path, tmp_path: Path, real_run: RunLog
 ) -> None:

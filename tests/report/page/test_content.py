@@ -27,6 +27,8 @@ from evodesign.runlog.writer import RunWriter
 from tests.report.page.reading import check_as_shown, check_to_seven_digits, embedded
 from tests.runlog.toys import toy_detail, toy_evaluations, toy_generation, toy_header
 
+pytestmark = pytest.mark.slow
+
 NAME = "</script><script>alert(1)</script>"
 
 
@@ -45,7 +47,6 @@ def toy_run(directory: Path, count: int = 30) -> RunLog:
     return read_run(directory)
 
 
-@pytest.mark.slow
 def test_every_number_of_an_evaluation_is_the_logs(real_run: RunLog, content: Content) -> None:
     points = content.points
     assert points.number == [evaluation.number for evaluation in real_run.evaluations]
@@ -62,7 +63,6 @@ def test_every_number_of_an_evaluation_is_the_logs(real_run: RunLog, content: Co
     assert content.generations == real_run.generations
 
 
-@pytest.mark.slow
 def test_every_posture_is_the_logs(real_run: RunLog, content: Content) -> None:
     assert real_run.details
     details = {detail.evaluation: detail for detail in real_run.details}
@@ -73,7 +73,6 @@ def test_every_posture_is_the_logs(real_run: RunLog, content: Content) -> None:
         check_to_seven_digits(design.cases, real_run.evaluations[number].assessment.cases)
 
 
-@pytest.mark.slow
 def test_every_posture_has_its_nearest_bodies(
     real_run: RunLog, content: Content, problem: DesignProblem
 ) -> None:
@@ -92,7 +91,6 @@ def test_every_posture_has_its_nearest_bodies(
         break
 
 
-@pytest.mark.slow
 def test_masses_are_the_resized_robots(real_run: RunLog, content: Content, problem: DesignProblem) -> None:
     assert content.bodies is not None
     for number, design in content.designs.items():
@@ -104,7 +102,6 @@ def test_masses_are_the_resized_robots(real_run: RunLog, content: Content, probl
             check_to_seven_digits(masses, {link.name: float(link.inertia.mass) for link in tree.links})
 
 
-@pytest.mark.slow
 def test_unscaled_robot_and_the_best_of_each_objective_are_marked(real_run: RunLog, content: Content) -> None:
     marks = {mark.label: mark.number for mark in content.marks}
     assert marks["unscaled robot"] == 0
@@ -129,18 +126,15 @@ def test_unscaled_robot_and_the_best_of_each_objective_are_marked(real_run: RunL
     )
 
 
-@pytest.mark.slow
 def test_asked_designs_are_marked(real_run: RunLog) -> None:
     assert (5, "asked") in {(mark.number, mark.kind) for mark in page_content(real_run, (5,)).marks}
 
 
-@pytest.mark.slow
 def test_design_that_the_run_does_not_hold_is_refused(real_run: RunLog) -> None:
     with pytest.raises(InputError, match="12 evaluations, found 99"):
         page_content(real_run, (99,))
 
 
-@pytest.mark.slow
 def test_what_is_left_out_is_said(
     real_run: RunLog, monkeypatch: pytest.MonkeyPatch, content: Content
 ) -> None:
@@ -158,7 +152,6 @@ def test_what_is_left_out_is_said(
     assert small.facts == content.facts, "the run's own figures count everything"
 
 
-@pytest.mark.slow
 def test_heights_at_which_nobody_was_measured_are_said(real_run: RunLog) -> None:
     header, person = real_run.header, 'posture = "least_torque"'
     assert person in header.problem.text
@@ -170,7 +163,6 @@ def test_heights_at_which_nobody_was_measured_are_said(real_run: RunLog) -> None
     assert note.startswith("human: how measured people stand with the load at 0.8 m is an assumption")
 
 
-@pytest.mark.slow
 def test_marked_designs_stay_then_the_front_then_the_feasible() -> None:
     evaluations = toy_evaluations(toy_header(), 40)
     bad = [evaluation.number for evaluation in evaluations if not evaluation.feasible]
@@ -181,7 +173,6 @@ def test_marked_designs_stay_then_the_front_then_the_feasible() -> None:
     assert kept & set(bad) == {bad[0]}, "feasible designs come before others"
 
 
-@pytest.mark.slow
 def test_names_are_text_and_come_back_as_they_were(real_run: RunLog, content: Content) -> None:
     named = msgspec.structs.replace(content, facts=msgspec.structs.replace(content.facts, problem=NAME))
     page = page_html(named)
@@ -189,7 +180,6 @@ def test_names_are_text_and_come_back_as_they_were(real_run: RunLog, content: Co
     check_as_shown(embedded(page), named)
 
 
-@pytest.mark.slow
 def test_page_asks_for_nothing(content: Content) -> None:
     page = page_html(content)
     unpacked = re.sub(r'(<script type="text/plain"[^>]*>)[^/]*(?=</script>)', r"\1", page)
@@ -199,7 +189,6 @@ def test_page_asks_for_nothing(content: Content) -> None:
     assert not re.search(r"https?://", own.split("</script>", 1)[1])
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("count", [0, 1, 30])
 def test_problem_that_cannot_be_rebuilt_leaves_out_only_the_robot(tmp_path: Path, count: int) -> None:
     run = toy_run(tmp_path / "toy", count)
@@ -210,7 +199,6 @@ def test_problem_that_cannot_be_rebuilt_leaves_out_only_the_robot(tmp_path: Path
     assert json.loads(msgspec.json.encode(made))["facts"]["evaluations"] == count
 
 
-@pytest.mark.slow
 def test_run_without_feasible_design_shows_the_nearest(tmp_path: Path) -> None:
     header = toy_header()
     with RunWriter(tmp_path / "bad", header) as log:
@@ -223,7 +211,6 @@ def test_run_without_feasible_design_shows_the_nearest(tmp_path: Path) -> None:
     assert nearest == sorted(missed, key=lambda number: missed[number])[:5]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("count", [1, 5])
 def test_any_number_of_objectives(tmp_path: Path, count: int) -> None:
     more = tuple(Objective(name=f"more.{i}", sense=Sense.MINIMISE, unit="kg") for i in range(3))
@@ -245,7 +232,6 @@ def test_any_number_of_objectives(tmp_path: Path, count: int) -> None:
     assert {"best"} <= {mark.kind for mark in made.marks}
 
 
-@pytest.mark.slow
 def test_run_cut_by_a_crash_gives_a_page_with_a_note(tmp_path: Path, real_run: RunLog) -> None:
     log = (real_run.directory / "000.mcap").read_bytes()
     (tmp_path / "000.mcap").write_bytes(log[: len(log) * 2 // 3])
@@ -254,7 +240,6 @@ def test_run_cut_by_a_crash_gives_a_page_with_a_note(tmp_path: Path, real_run: R
     assert "ends after" in made.notes[0]
 
 
-@pytest.mark.slow
 def test_every_file_of_the_template_is_in_the_page(content: Content) -> None:
     page = page_html(content)
     for file in TEMPLATE.iterdir():
@@ -262,7 +247,6 @@ def test_every_file_of_the_template_is_in_the_page(content: Content) -> None:
         assert file.name == "page.html" or text in page, f"{file.name} is left out"
 
 
-@pytest.mark.slow
 def test_scripts_read_no_column_that_the_page_lacks() -> None:
     scripts = [file.read_text(encoding="utf-8") for file in TEMPLATE.iterdir() if file.name.endswith(".js")]
     read = {name for script in scripts for name in re.findall(r"\bpoints\.(\w+)", script)}

@@ -19,6 +19,8 @@ from evodesign.runlog.run import RunLog
 from tests.report.page.chromium import Tab, browser
 from tests.report.page.reading import open_page
 
+pytestmark = pytest.mark.slow
+
 ROWS = """JSON.stringify([...document.querySelectorAll('[data-effort]')].map(row =>
     [row.dataset.effort, row.lastChild.textContent, row.lastChild.className]))"""
 
@@ -28,7 +30,6 @@ CHOOSE = """(() => { const choice = document.getElementById('axis-up');
     choice.dispatchEvent(new Event('change')); return true; })()"""
 
 
-@pytest.mark.slow
 def test_the_page_holds_what_the_postures_ask(real_run: RunLog, problem: DesignProblem) -> None:
     content = page_content(real_run)
     shown = [detail for detail in real_run.details if detail.evaluation in content.designs]
@@ -44,13 +45,11 @@ def test_the_page_holds_what_the_postures_ask(real_run: RunLog, problem: DesignP
             assert (told.tires, told.longer) == (asked.endurance.joint.joint, not asked.endurance.measured)
 
 
-@pytest.mark.slow
 def test_the_line_on_the_front_is_at_the_limit() -> None:
     script = resources.files("evodesign.report.page").joinpath("template", "front.js").read_text("utf-8")
     assert f"const BACK_LIMIT = {ACTION_LIMIT:g};" in script
 
 
-@pytest.mark.slow
 @pytest.mark.needs_chromium
 def test_the_front_has_a_line_at_the_limit_where_the_back_is_an_axis(
     real_run: RunLog, tmp_path: Path
@@ -83,7 +82,6 @@ def test_the_front_has_a_line_at_the_limit_where_the_back_is_an_axis(
     assert [(line["y0"], line["y1"]) for line in lines] == [(ACTION_LIMIT, ACTION_LIMIT)]
 
 
-@pytest.mark.slow
 @pytest.mark.needs_chromium
 def test_the_card_names_the_limit_of_the_back(page: Tab) -> None:
     rows = {name: (text, look) for name, text, look in json.loads(page.value(ROWS))}

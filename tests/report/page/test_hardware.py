@@ -25,7 +25,7 @@ from tests.report.page.chromium import Tab
 from tests.report.page.reading import open_page, shown_as
 from tests.report.scenes import random_detail
 
-pytestmark = pytest.mark.needs_chromium
+pytestmark = [pytest.mark.needs_chromium, pytest.mark.slow]
 
 SECTION = "[...document.querySelectorAll('.card details')].find(d => d.textContent.startsWith('{title}'))"
 
@@ -68,7 +68,6 @@ def page(run: RunLog) -> Path:
     return path
 
 
-@pytest.mark.slow
 def test_the_card_shows_what_the_bill_says(
     chromium: Tab, run: RunLog, page: Path, hardware: DesignProblem
 ) -> None:
@@ -100,7 +99,6 @@ def test_the_card_shows_what_the_bill_says(
     assert chromium.complaints() == []
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("width", [390, 1024])
 def test_the_tables_fit_into_a_card(chromium: Tab, page: Path, width: int) -> None:
     chromium.open(page.as_uri(), width=width)
@@ -110,7 +108,6 @@ def test_the_tables_fit_into_a_card(chromium: Tab, page: Path, width: int) -> No
         assert chromium.value(f"{section}.scrollWidth <= {section}.clientWidth"), title
 
 
-@pytest.mark.slow
 def test_windings_are_as_warm_as_the_quantity_says(repository: Path) -> None:
     source = read_source(repository / "problems" / "icub_hardware.toml")
     duty = "[duty]\nlifts_per_hour = 60\nhold_s = 20.0\nshift_h = 8.0\nwinding_limit_c = 120.0\n"
@@ -127,6 +124,5 @@ def test_windings_are_as_warm_as_the_quantity_says(repository: Path) -> None:
     assert {one.winding_limit_c for one in content.actuators} == {120.0}
 
 
-@pytest.mark.slow
 def test_a_problem_without_hardware_has_no_such_sections(real_run: RunLog) -> None:
     assert all(design.hardware is None for design in page_content(real_run).designs.values())

@@ -41,7 +41,7 @@ from tests.report.page.chromium import Tab
 from tests.report.page.reading import open_page
 from tests.report.scenes import random_instant, random_values
 
-pytestmark = pytest.mark.needs_chromium
+pytestmark = [pytest.mark.needs_chromium, pytest.mark.slow]
 
 AT_REST = ", at rest"
 
@@ -104,7 +104,6 @@ def drawn(page: Tab, plot: int) -> dict[str, tuple[list[float], list[float]]]:
     return {name: (x, y) for name, x, y in page.value(script)}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("option", "who"), [(0, "robot"), (1, "human")])
 def test_torques_power_and_forces_on_hands_are_those_of_the_log(
     page: Tab, run: RunLog, option: int, who: str
@@ -150,7 +149,6 @@ def statics(agent: Agent, tree: Tree, own: AgentDetail) -> dict[str, float]:
     return {joint: float(found[joint]) for joint in agent.joints}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("option", "who"), [(0, "robot"), (1, "human")])
 def test_torques_at_rest_are_those_of_statics_in_the_same_moments(
     page: Tab, run: RunLog, problem: DesignProblem, option: int, who: str
@@ -168,7 +166,6 @@ def test_torques_at_rest_are_those_of_statics_in_the_same_moments(
         assert values == pytest.approx([each[joint] for each in wanted], rel=1e-4, abs=1e-4)
 
 
-@pytest.mark.slow
 def test_centres_of_pressure_are_where_the_ground_pushes(
     page: Tab, run: RunLog, problem: DesignProblem
 ) -> None:
@@ -186,7 +183,6 @@ def test_centres_of_pressure_are_where_the_ground_pushes(
             assert (moment - np.cross(there, force))[:2] == pytest.approx([0.0, 0.0], abs=1e-3)
 
 
-@pytest.mark.slow
 def test_limits_of_torques_are_told_beside_the_joints(problem: DesignProblem) -> None:
     robot = replace(problem.scene.robot, torque_limits={"l_knee": 40.0}, limits_torques=True)
     limited = [scene.with_agents(robot) for scene in problem.scenes]

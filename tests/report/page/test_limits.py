@@ -16,6 +16,8 @@ from evodesign.runlog.run import RunLog
 from evodesign.tree.words import in_words
 from tests.report.page.chromium import Tab
 
+pytestmark = pytest.mark.slow
+
 MINUS = "\N{MINUS SIGN}"
 
 ROWS = """JSON.stringify([...document.querySelectorAll('[data-limit]')].map(row =>
@@ -32,7 +34,6 @@ def shown_case(page: Tab) -> dict[str, Any]:
     )
 
 
-@pytest.mark.slow
 @pytest.mark.needs_chromium
 def test_the_card_lists_the_limits_of_the_posture_that_is_shown(page: Tab, real_run: RunLog) -> None:
     rows = json.loads(page.value(ROWS))
@@ -51,7 +52,6 @@ def test_the_card_lists_the_limits_of_the_posture_that_is_shown(page: Tab, real_
     assert [limit.identity for limit in own.limits] == [limit.identity for limit in detail.limits]
 
 
-@pytest.mark.slow
 def test_notes_name_the_limits_that_hold_most_of_the_front(real_run: RunLog) -> None:
     often = [each.sentence for each in frequent_limits(real_run)]
     assert often

@@ -18,7 +18,7 @@ from tests.report.page.chromium import Tab
 from tests.report.page.reading import open_page
 from tests.report.page.test_limits import shown_case
 
-pytestmark = pytest.mark.needs_chromium
+pytestmark = [pytest.mark.needs_chromium, pytest.mark.slow]
 
 REMARKS = """JSON.stringify([...document.querySelectorAll('[data-remark]')].map(one =>
     [one.dataset.remark, one.textContent]))"""
@@ -28,7 +28,6 @@ def remarks(tab: Tab) -> list[tuple[str, str]]:
     return [(kind, text) for kind, text in json.loads(tab.value(REMARKS))]
 
 
-@pytest.mark.slow
 def test_limits_and_joints_that_carry_nothing_are_those_of_the_posture(page: Tab, real_run: RunLog) -> None:
     found = remarks(page)
     number = page.value("window.evodesign.state.selected")
@@ -106,7 +105,6 @@ def changed(content: Content) -> Content:
     )
 
 
-@pytest.mark.slow
 def test_whatever_gives_cause_for_a_remark_has_one(chromium: Tab, real_run: RunLog, tmp_path: Path) -> None:
     path = tmp_path / "report.html"
     path.write_text(page_html(changed(page_content(real_run))), encoding="utf-8")

@@ -19,7 +19,7 @@ from tests.report.page.chromium import Tab
 from tests.report.page.reading import CANVAS, SHOWN_WITHIN, check_poses, open_page, shown_as
 from tests.report.several import CASES, HEIGHTS, LOADS, PEOPLE, problem_of_several, write_several
 
-pytestmark = pytest.mark.needs_chromium
+pytestmark = [pytest.mark.needs_chromium, pytest.mark.slow]
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +43,6 @@ def choose(tab: Tab, control: str, option: int) -> None:
     tab.value(f"(() => {{ {script} s.dispatchEvent(new Event('change')); }})()")
 
 
-@pytest.mark.slow
 def test_links_of_each_case_stand_where_that_persons_kinematics_puts_them(page: Tab, run: RunLog) -> None:
     for place, (human, _, _) in enumerate(CASES):
         script = (
@@ -55,7 +54,6 @@ def test_links_of_each_case_stand_where_that_persons_kinematics_puts_them(page: 
         check_poses(page, script, human_tree(PEOPLE[human]), posture, math.pi, within=SHOWN_WITHIN)
 
 
-@pytest.mark.slow
 def test_choosing_person_load_and_height_shows_that_case(page: Tab, run: RunLog) -> None:
     number = page.value("window.evodesign.state.selected")
     pictures = set()
@@ -85,7 +83,6 @@ def test_choosing_person_load_and_height_shows_that_case(page: Tab, run: RunLog)
     assert len(pictures) == len(CASES)
 
 
-@pytest.mark.slow
 def test_a_click_on_a_case_shows_it_and_its_number_is_the_logs(page: Tab, run: RunLog) -> None:
     number = page.value("window.evodesign.state.selected")
     outcomes = run.evaluations[number].assessment.cases
@@ -100,7 +97,6 @@ def test_a_click_on_a_case_shows_it_and_its_number_is_the_logs(page: Tab, run: R
     assert page.value("document.getElementById('person').value") == "0"
 
 
-@pytest.mark.slow
 def test_controls_of_people_and_loads_have_names(page: Tab) -> None:
     for control, name in (("person", "Person"), ("payload", "Load")):
         label = f"document.getElementById('{control}').labels[0].firstChild.textContent"
@@ -109,7 +105,6 @@ def test_controls_of_people_and_loads_have_names(page: Tab) -> None:
     assert options == [*PEOPLE]
 
 
-@pytest.mark.slow
 def test_the_chosen_design_tells_how_torques_spread_over_people(page: Tab, run: RunLog) -> None:
     number = page.value("window.evodesign.state.selected")
     cases = run.evaluations[number].assessment.cases
@@ -130,7 +125,6 @@ def test_the_chosen_design_tells_how_torques_spread_over_people(page: Tab, run: 
     assert bars[2:] == pytest.approx([mean, deviation], rel=1e-6)
 
 
-@pytest.mark.slow
 def test_quantiles_and_largest_torques_spread_as_they_are_defined(run: RunLog) -> None:
     cases = run.evaluations[0].assessment.cases
     names = ["worst_robot_torque", "q50_human_torque", "reach_height", "robot_torque"]
