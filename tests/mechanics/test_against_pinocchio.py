@@ -29,7 +29,7 @@ from tests.tree.crane import crane
 
 pytestmark = pytest.mark.slow
 
-CASES = 40
+CASES = 120
 RELATIVE = 1e-10
 
 
