@@ -422,10 +422,10 @@ def objective_value(name: str, result: DesignResult) -> float | None:
     kind = objective_kind(name)
     if kind is None:
         raise KeyError(name)
-    if not is_outside(name):
-        return kind.value(result)
     try:
         return kind.value(result)
-    except Exception as error:  # it may raise anything
+    except Exception as error:  # a function of the user's may raise anything
+        if not is_outside(name):
+            raise
         found = f"'{name}', which fails: {explain(error)}"
         raise InputError("objectives", "", "a function that gives a value, or None", found) from error

@@ -26,6 +26,7 @@ from evodesign.records import (
     RunHeader,
     Status,
 )
+from evodesign.report.export import readme
 from evodesign.report.export.design import ExportedDesign
 from evodesign.report.export.folder import export_design
 from evodesign.report.scene_models import SceneModels, SceneSet
@@ -232,3 +233,9 @@ def test_equal_designs_give_equal_files(exported: tuple[ExportedDesign, Path], t
     export_design(design, tmp_path, on_front=True)
     for path in folder.iterdir():
         assert (tmp_path / path.name).read_bytes() == path.read_bytes(), path.name
+
+
+def test_only_the_file_of_a_person_speaks_of_one() -> None:
+    """A robot may hold the load alone."""
+    for name, text in {**readme.FILES, "frames": readme.FRAMES}.items():
+        assert ("person" in text.lower()) is (name == "human.urdf"), name
