@@ -1,9 +1,10 @@
 """What could be wrong with a robot though its files can be read, looked at before anything long begins.
 
 Each item either passes, with what was found, or fails with a sentence that names key, fault and remedy.
-Places are those with all joints at zero. The last item solves: the reach of the robot as it is in its file,
-and the posture at one height within. It does so without `[collisions]`, of which the robot's colliding pairs
-would have to be found first, in a minute.
+Places are those with all joints at zero. The last items solve: the reach of the robot as it is in its file
+and the posture at one height within, then the reach of each person. A height outside of the robot's reach is
+refused where robots of the shortest and longest lengths do not reach it either. Reach is solved for without
+`[collisions]`, of which the robot's colliding pairs would have to be found first, in a minute.
 """
 
 from __future__ import annotations
@@ -16,12 +17,14 @@ from dataclasses import dataclass, replace
 from evodesign.body.inertia import total
 from evodesign.body.placement import Placement, Vector, rotate
 from evodesign.collision.shapes import solids_of
-from evodesign.design.parameter import DesignParameter
-from evodesign.errors import InputError
+from evodesign.design.parameter import DesignParameter, ParameterKind
+from evodesign.errors import InputError, listed
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.guess.body_plan import body_plan
 from evodesign.mechanics.agent import SIDES, Agent
 from evodesign.mechanics.scene import Scene
+from evodesign.posture.formulations.reach import Reach, people_reach
+from evodesign.posture.postures import Symmetry
 from evodesign.problem.agent_tables import Facing
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.file import ProblemFile
@@ -44,6 +47,14 @@ FEWEST_JOINTS = 3
 LONGER, LEAST_CHANGE = 1.1, 1e-6
 """Multiplier with which a parameter is tried, and a change of the mass [kg] that is one."""
 
+WIDEST = {
+    ParameterKind.LOWER: False,
+    ParameterKind.UPPER: True,
+    ParameterKind.ACTUATOR: True,
+    ParameterKind.MARGIN: True,
+}
+"""Whether the upper bound of a parameter, not the lower, lets a robot reach farther."""
+
 
 @dataclass(frozen=True, slots=True)
 class Finding:
@@ -57,7 +68,7 @@ class Finding:
 def preflight(problem: DesignProblem) -> tuple[Finding, ...]:
     """Every item in turn; what solves comes only after all others have passed."""
     if not problem.scene.robots:
-        return (_tried("holds the load", lambda: _holds(problem)),)
+        return _solved(problem)
     robot, space = problem.scene.robot, problem.space
     welded = WeldedTree(robot.tree)
     equipped = WeldedTree(space.resized(robot.tree, space.given(space.unscaled(robot.tree), {})))
@@ -73,9 +84,14 @@ def preflight(problem: DesignProblem) -> tuple[Finding, ...]:
             words, value = _other(parameter, space.unscaled(robot.tree)[index])
             items[f"{parameter.name} {words}"] = functools.partial(_changes, problem, equipped, index, value)
     found = [_tried(name, item) for name, item in items.items()]
-    if not any(finding.fault for finding in found):
-        found.append(_tried("holds the load", lambda: _holds(problem)))
-    return tuple(found)
+    return tuple(found) if any(finding.fault for finding in found) else (*found, *_solved(problem))
+
+
+def _solved(problem: DesignProblem) -> tuple[Finding, ...]:
+    """The items that solve."""
+    both = problem.scene.robots and problem.scene.people
+    items = {"holds the load": _holds} | ({"people reach it": _people} if both else {})
+    return tuple(_tried(name, functools.partial(item, problem)) for name, item in items.items())
 
 
 def _tried(name: str, item: Callable[[], str]) -> Finding:
@@ -249,6 +265,8 @@ def _holds(problem: DesignProblem) -> str:
     if not within:
         who = "the robot reaches" if scene.robots else "everyone reaches"
         raise InputError("task.heights_m", "", f"a height that {who}, {found}", beyond)
+    if beyond:
+        _refuse_beyond_every_design(problem, replace(alone, tasks=within[:1]), reach)
     if middle not in within:
         case = Evaluator(replace(alone, tasks=within[:1])).solve(unscaled).cases[0]
     if not case.solved:
@@ -257,3 +275,58 @@ def _holds(problem: DesignProblem) -> str:
     out = f"; out of reach unless a design reaches farther: {beyond} m" if beyond else ""
     apart = "" if scene.agents[0].collisions is None else ", [collisions] aside"
     return f"{found}; a posture at {case.case.task} is solved{apart}{out}"
+
+
+def _refuse_beyond_every_design(problem: DesignProblem, alone: DesignProblem, reach: Reach) -> None:
+    """Refuse heights that no robot of the extreme lengths reaches; where joints may move, nobody knows.
+
+    Args:
+        problem: whose heights these are.
+        alone: the same as it is solved here.
+        reach: of the robot as it is.
+    """
+    free = {parameter.kind for parameter in problem.space.free}
+    if free & {ParameterKind.OFFSET, ParameterKind.TILT}:
+        return
+    ends = (False, True) if free & {ParameterKind.LENGTH, *WIDEST} else ()
+    values = [_extreme(problem, longest=longest) for longest in ends]
+    reaches = [reach, *(Evaluator(alone).solve(each).reach for each in values)]
+    known = [(each.lowest, each.highest) for each in reaches if each.lowest and each.highest]
+    lowest, highest = min(low for low, _ in known), max(high for _, high in known)
+    who = "the robot" if problem.scene.robots else "everyone"
+    design = " as it is or with lengths at either bound" if ends else ""
+    _refuse_outside(problem, f"{who} reaches{design}", lowest, highest)
+
+
+def _extreme(problem: DesignProblem, *, longest: bool) -> tuple[float, ...]:
+    """Values of the robot with its shortest or longest lengths, widest joints and strongest actuators."""
+    at_upper = {ParameterKind.LENGTH: longest, **WIDEST}
+    values = zip(problem.space.parameters, problem.space.unscaled(problem.scene.designed_tree), strict=True)
+    return tuple(
+        (each.upper if at_upper[each.kind] else each.lower) if each.kind in at_upper else value
+        for each, value in values
+    )
+
+
+def _refuse_outside(problem: DesignProblem, who: str, lowest: float, highest: float) -> None:
+    """Refuse heights of a problem [m] that are not within some."""
+    outside = {key: f"{at:g}" for key, at in problem.named_heights.items() if not lowest <= at <= highest}
+    if outside:
+        wanted = f"heights that {who}, from {lowest:.2f} to {highest:.2f} m"
+        raise InputError(listed([*outside]), "", wanted, listed([*outside.values()]))
+
+
+def _people(problem: DesignProblem) -> str:
+    """Heights that every person reaches, which no design changes; with the last load of each."""
+    options = replace(problem.options, compiled=False, seldom=True)
+    symmetric = problem.symmetry is not Symmetry.OFF
+    found = []
+    for person, scene in {scene.pair[0]: scene for scene in problem.scenes}.items():
+        reach = people_reach(scene, options, symmetric=symmetric)
+        if reach is not None:
+            _refuse_outside(problem, f"{person or 'the person'} reaches", reach.lowest, reach.highest)
+            found.append(reach)
+    if not found:
+        return "not known"
+    lowest, highest = max(each.lowest for each in found), min(each.highest for each in found)
+    return f"from {lowest:.2f} to {highest:.2f} m"

@@ -82,6 +82,7 @@ def test_a_guessed_problem_passes_and_says_what_was_found() -> None:
         "has shapes",
         *(f"length.{name} + 10%" for name in ("upper_arm", "forearm", "thigh", "shank", "trunk")),
         "holds the load",
+        "people reach it",
     ]
     assert not any(finding.fault for finding in found.values())
     assert found["length.thigh + 10%"].found.startswith("soles by 38 mm, +")
@@ -102,15 +103,26 @@ def test_a_parameter_that_chooses_among_models_changes_the_mass_by_that_of_the_n
     assert found == {"actuator.knees X8-120 to X6-60": f"{less:+.2g} kg"}
 
 
-def test_heights_out_of_reach_are_named_beside_those_within() -> None:
-    *_, held = preflight(
-        problem_of(
-            humanoid(Build()), lambda text: re.sub(r"heights_m = .*", "heights_m = [1.05, 2.5, 3.0]", text)
-        )
+def at_heights(heights: str) -> DesignProblem:
+    return problem_of(
+        humanoid(Build()), lambda text: re.sub(r"heights_m = .*", f"heights_m = {heights}", text)
     )
+
+
+def test_heights_out_of_reach_are_named_beside_those_within() -> None:
+    *_, held, people = preflight(at_heights("[1.05, 1.7]"))
     assert not held.fault
     assert " at 1.05 m is solved" in held.found
-    assert held.found.endswith("; out of reach unless a design reaches farther: 2.5, 3 m")
+    assert held.found.endswith("; out of reach unless a design reaches farther: 1.7 m")
+    assert re.fullmatch(r"from 0\.0\d to 1\.7\d m", people.found)
+
+
+def test_heights_that_no_length_and_no_person_reaches_are_refused() -> None:
+    robot, person = faults(at_heights("[1.05, 4.0]"))
+    key = r"task\.heights_m\[1\]: wanted heights that"
+    who = "the robot reaches as it is or with lengths at either bound"
+    assert re.fullmatch(rf"{key} {who}, from 0\.\d\d to \d\.\d\d m, found 4", robot)
+    assert re.fullmatch(rf"{key} female P5 reaches, from 0\.0\d to 1\.7\d m, found 4", person)
 
 
 def test_a_robot_without_shapes_passes_and_is_told_what_is_left_out() -> None:
