@@ -225,7 +225,8 @@ class LiftProblem:
         slow = [program.solve(lift, start, design, mass, 0.0)[0] for start in starts]
         if any(status_of(ending.word) is Status.SOLVED for ending in slow):
             reason = (
-                f"{lift} is too fast: the same motion is found where nothing has inertia or a limit of speed"
+                f"{lift} is too fast, wanted more `seconds`: a motion is found where nothing has inertia and "
+                "joints have no limit of speed"
             )
         elif open_by > OPEN:
             reason = f"{lift} passes a height out of reach: hands or feet are {open_by:.3f} m off on the way"

@@ -12,12 +12,18 @@ from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
 from evodesign.human.measured_posture import unmeasured_heights
 from evodesign.mechanics.agent import Agent
+from evodesign.mechanics.balance import GRAVITY
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.left_out import left_out
+from evodesign.records import Lift
+from evodesign.tasks.lift import LoadProfile
 from evodesign.tree.model import Joint
 
 ALIKE = math.radians(15.0)
 """Joint limits closer than this count as the same; they fit better if they are closer by this much."""
+
+PEAK_ACCELERATION = {LoadProfile.MINIMUM_JERK: 10.0 / math.sqrt(3.0), LoadProfile.FREE: 4.0}
+"""Largest acceleration of a lift as a multiple of its way over its squared time; of a free one at least."""
 
 PARALLEL = math.cos(math.radians(10.0))
 """Joint axes whose directions have at least this cosine count as the same."""
@@ -30,7 +36,8 @@ def notes(problem: DesignProblem) -> tuple[str, ...]:
     make postures symmetric or why they are whole, what the model leaves out, and limits of a person's joints
     that look as if their sign were wrong: only joints with the names of the generated person, in the same
     T-pose (x forward, y to the left, z up; docs/person.md), and whether or not the problem moves them. Limits
-    do not depend on stature, mass or sex, so any person serves. Then heights at which nobody was measured.
+    do not depend on stature, mass or sex, so any person serves. Then heights at which nobody was measured,
+    and lifts that are faster than a fall.
     """
     people = [person.tree for scene in problem.scenes for person in scene.people]
     anatomy = human_tree(Person(1.75, 75.0, Sex.MALE)).joint_by_name
@@ -45,8 +52,20 @@ def notes(problem: DesignProblem) -> tuple[str, ...]:
     wrong = (sentence for sentence in found if sentence)
     agents = (*problem.scene.robots, *(person for scene in problem.scenes for person in scene.people))
     still = (f"{agent.tree.name}: {sentence}" for agent in agents for sentence in _still(agent))
-    left, assumed = left_out(problem.source), assumed_heights(problem)
+    left, assumed = left_out(problem.source), (*assumed_heights(problem), *_hasty_lifts(problem))
     return tuple(dict.fromkeys((*read, *still, *problem.symmetry_notes, *wrong, *assumed, *left)))
+
+
+def _hasty_lifts(problem: DesignProblem) -> Iterator[str]:
+    """A sentence for each lift whose load is accelerated downwards faster than it falls."""
+    for place, lift in enumerate(task for task in problem.tasks if isinstance(task, Lift)):
+        peak = PEAK_ACCELERATION[lift.profile] * abs(lift.to_m - lift.from_m)
+        if peak > GRAVITY * lift.seconds**2:
+            yield (
+                f"task.lift[{place}].seconds: {lift} accelerates the load by "
+                f"{peak / lift.seconds**2 / GRAVITY:.2g} g, so that hands must push it down; wanted at least "
+                f"{math.sqrt(peak / GRAVITY):.2f} s"
+            )
 
 
 def assumed_heights(problem: DesignProblem) -> Iterator[str]:

@@ -11,6 +11,8 @@ from evodesign.human.measured_posture import measured_posture
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.left_out import left_out
 from evodesign.problem.notes import notes
+from evodesign.records import Lift
+from evodesign.tasks.lift import LoadProfile, minimum_jerk
 from evodesign.tree.model import Joint
 
 Limits = tuple[float, float]
@@ -117,3 +119,25 @@ def test_heights_at_which_nobody_was_measured_are_named(problem: DesignProblem) 
         "human: how measured people stand with the load at 0.8 m is an assumption: nobody was measured who "
         "held one between 0.44 and 0.54 of stature",
     )
+
+
+STEP = 1e-4
+"""Of the share of a lift's time, for differences."""
+
+
+def test_a_lift_that_accelerates_the_load_faster_than_it_falls_is_noted(problem: DesignProblem) -> None:
+    """The acceleration is that of finite differences of the profile."""
+    shares = [STEP * place for place in range(1, 10000)]
+    bends = [minimum_jerk(s + STEP) - 2.0 * minimum_jerk(s) + minimum_jerk(s - STEP) for s in shares]
+    least = math.sqrt(0.4 * max(bends) / STEP**2 / 9.81)
+    lifts = [Lift(from_m=0.8, to_m=1.2, seconds=seconds) for seconds in (0.01, 0.999 * least, 1.001 * least)]
+    found = strange(replace(problem, tasks=tuple(lifts)))
+    assert [sentence.split(": ")[0] for sentence in found] == ["task.lift[0].seconds", "task.lift[1].seconds"]
+    assert found[0].endswith(f" push it down; wanted at least {least:.2f} s")
+
+
+def test_a_free_lift_may_take_less_time_than_one_of_minimum_jerk(problem: DesignProblem) -> None:
+    """At best it speeds up and slows down equally, half of the time each: way = g (T / 2)^2."""
+    for seconds, noted in ((2.0 * math.sqrt(0.4 / 9.81) - 1e-3, 1), (2.0 * math.sqrt(0.4 / 9.81) + 1e-3, 0)):
+        lift = Lift(from_m=0.8, to_m=1.2, seconds=seconds, profile=LoadProfile.FREE)
+        assert len(strange(replace(problem, tasks=(lift,)))) == noted
