@@ -94,17 +94,30 @@ class Interrupted(EvodesignError):
 
 
 def nearest_name(name: str, names: Iterable[str]) -> str:
-    """A hint such as `; did you mean 'chest'?`, or an empty string when nothing is near."""
+    """A hint such as `; did you mean 'chest'?`, or an empty string when nothing is near.
+
+    Names that are equally near are all in it, at most `LISTED` of them.
+    """
     if len(name) > LONGEST_WORD:  # looking for a match takes as long as the square of its letters
         return ""
-    match = difflib.get_close_matches(name, list(names), n=1, cutoff=0.5)
-    return f"; did you mean '{match[0]}'?" if match else ""
+    matches = difflib.get_close_matches(name, list(names), n=LISTED, cutoff=0.5)
+    likeness = [difflib.SequenceMatcher(None, match, name).ratio() for match in matches]
+    nearest = [f"'{match}'" for match, like in zip(matches, likeness, strict=True) if like == likeness[0]]
+    return f"; did you mean {' or '.join(sorted(nearest))}?" if nearest else ""
 
 
-def some_of(names: Iterable[str], name: str) -> str:
-    """The names that would do in place of one: a few of them where one is near, which is named beside."""
+def offered(names: Iterable[str], name: str, meant: str = "", beside: Iterable[str] = ()) -> tuple[str, str]:
+    """What would do in place of a name, and the name with a hint: a few names where one is near, else all.
+
+    Args:
+        names: that would do.
+        name: as it stands.
+        meant: which name it is likely to stand for; left out: itself.
+        beside: names that would do and are not listed.
+    """
     known = [*names]
-    return listed(known) if nearest_name(name, known) else ", ".join(known)
+    hint = nearest_name(meant or name, [*known, *beside])
+    return listed(known) if hint else ", ".join(known), f"'{name}'{hint}"
 
 
 def explain(error: BaseException) -> str:

@@ -25,7 +25,7 @@ from dataclasses import dataclass
 from functools import partial
 from operator import attrgetter
 
-from evodesign.errors import InputError, nearest_name, some_of
+from evodesign.errors import InputError, offered
 from evodesign.records import SUM, Case, CaseOutcome, Evaluation, RunHeader, Task
 
 Quantity = Callable[[Evaluation], float | None]
@@ -97,10 +97,11 @@ def quantity(known: Mapping[str, Quantity], name: str, source: str) -> Quantity:
     """
     if name not in known:
         short = [each for each in known if each.count("@") < 2]
-        wanted = f"one of {some_of(short, name)}"
+        names, found = offered(short, name, beside=known)
+        wanted = f"one of {names}"
         if len(short) < len(known):
             wanted += ", robot_torque@WHO@WHAT@HEIGHT, human_torque@WHO@WHAT@HEIGHT"
-        raise InputError(source, "", wanted, f"'{name}'{nearest_name(name, known)}")
+        raise InputError(source, "", wanted, found)
     return known[name]
 
 

@@ -11,7 +11,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from evodesign.design.space import DesignSpace
-from evodesign.errors import InputError, nearest_name, some_of
+from evodesign.errors import InputError, offered
 from evodesign.mechanics.agent import Agent
 from evodesign.problem.file import BoundsTable, ProblemFile
 from evodesign.problem.torque_limits import PEAK_TORQUE, refuse_unlimited_peak
@@ -85,10 +85,8 @@ def _quantity(key: str, source: ProblemSource) -> tuple[str, ObjectiveKind]:
     quantile = re.match(r"q[1-9]\d?_", key)
     quantiles = [constraint_key(f"{quantile[0]}{name}") for name in QUANTITIES] if quantile else []
     meant = OTHERWISE_CALLED.get(key.removesuffix("_w"), key)
-    wanted = f"one of the keys {some_of(keys, meant)}"
-    raise InputError(
-        source.path, f"constraints.{key}", wanted, f"'{key}'{nearest_name(meant, [*keys, *quantiles])}"
-    )
+    known, found = offered(keys, key, meant, quantiles)
+    raise InputError(source.path, f"constraints.{key}", f"one of the keys {known}", found)
 
 
 def _check_bounds(table: BoundsTable, place: str, source: ProblemSource) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from evodesign.design.parameter import DesignParameter, ParameterKind
 from evodesign.design.space import DesignSpace
-from evodesign.errors import InputError, nearest_name, some_of
+from evodesign.errors import InputError, offered
 from evodesign.mechanics.contact import Ground
 from evodesign.mechanics.scene import Scene
 from evodesign.pool.base import Limits
@@ -176,10 +176,8 @@ def objectives_of(
         key = f"objectives.{sense}[{position}]"
         kind = objective_kind(name)
         if kind is None:
-            known = objective_kinds()
-            meant = OTHERWISE_CALLED.get(name, name)
-            wanted = f"one of {some_of(known, meant)}"
-            raise InputError(source.path, key, wanted, f"'{name}'{nearest_name(meant, known)}")
+            known, found = offered(objective_kinds(), name, OTHERWISE_CALLED.get(name, name))
+            raise InputError(source.path, key, f"one of {known}", found)
         if names.count(name) > 1:
             raise InputError(source.path, key, "each objective once", f"'{name}' twice")
         refuse_unanswered_quantity(key, name, tables, source, people)

@@ -10,7 +10,7 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
-from evodesign.errors import InputError, nearest_name, some_of
+from evodesign.errors import InputError, offered
 from evodesign.files import is_there
 
 PACKAGE = Path(__file__).parents[1]
@@ -52,6 +52,6 @@ def problem_path(problem: str | os.PathLike[str]) -> Path:
         return path
     known = {shipped.name: shipped.path for shipped in shipped_problems()}
     if path.name not in known:
-        wanted = f"a problem file, or one of the problems {some_of(known, path.name)}"
-        raise InputError("PROBLEM", "", wanted, f"'{problem}'{nearest_name(path.name, known)}")
+        names, found = offered(known, str(problem), path.name)
+        raise InputError("PROBLEM", "", f"a problem file, or one of the problems {names}", found)
     return known[path.name]

@@ -21,7 +21,7 @@ from typing import Any, TypeVar, get_args
 import msgspec
 import tomli_w
 
-from evodesign.errors import InputError, nearest_name, shortened, some_of
+from evodesign.errors import InputError, offered, shortened
 from evodesign.files import is_there
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.meshes import mesh_texts
@@ -201,9 +201,10 @@ def _refuse_unknown_keys(raw: Any, kind: Any, source: str, prefix: str) -> None:
     for key, value in raw.items():
         path = f"{prefix}.{key}" if prefix else key
         if key not in fields:
+            known, found = offered(fields, key)
             now = RENAMED.get(key)
-            hint = f"; it is called '{now}' now" if now in fields else nearest_name(key, fields)
-            raise InputError(source, path, f"one of the keys {some_of(fields, key)}", f"'{key}'{hint}")
+            found = f"'{key}'; it is called '{now}' now" if now in fields else found
+            raise InputError(source, path, f"one of the keys {known}", found)
         _refuse_unknown_keys(value, fields[key], source, path)
 
 
