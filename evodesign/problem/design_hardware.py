@@ -16,7 +16,7 @@ from itertools import pairwise
 from evodesign.body.material import Material
 from evodesign.design.parameter import DesignParameter, ParameterKind
 from evodesign.design.walls import Wall
-from evodesign.errors import InputError, nearest_name
+from evodesign.errors import InputError, nearest_name, offered
 from evodesign.hardware.actuators import (
     Actuator,
     PowerLaw,
@@ -269,8 +269,8 @@ def _material(
                 raise InputError(source.path, f"{key}.material", wanted, "neither")
         return None
     if table.material not in known:
-        wanted = "a material of the catalogue or of a [[material]] table"
-        found = f"'{table.material}'{nearest_name(table.material, known)}"
+        names, found = offered(known, table.material)
+        wanted = f"a material of the catalogue or of a [[material]] table ({names})"
         raise InputError(source.path, f"{key}.material", wanted, found)
     for link in table.links:
         if link in chosen:

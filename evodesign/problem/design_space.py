@@ -13,7 +13,7 @@ from itertools import pairwise
 from evodesign.body.material import CATALOGUE, Material
 from evodesign.design.parameter import ALLOCATIONS, EFFORT_RATIO, ROBOT_SHARE, DesignParameter, ParameterKind
 from evodesign.design.space import DesignSpace
-from evodesign.errors import InputError, nearest_name
+from evodesign.errors import InputError, nearest_name, offered
 from evodesign.mechanics.load_share import share_interval
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.allocation import EffortWeights
@@ -78,8 +78,9 @@ def _chosen(
     for position, name in enumerate(names):
         where = f"{key}[{position}]"
         if name not in known:
-            wanted = "a material of the catalogue or of a [[material]] table"
-            raise InputError(source.path, where, wanted, f"'{name}'{nearest_name(name, known)}")
+            names, found = offered(known, name)
+            wanted = f"a material of the catalogue or of a [[material]] table ({names})"
+            raise InputError(source.path, where, wanted, found)
         if name in names[:position]:
             raise InputError(source.path, where, "each material once", f"'{name}' twice")
     chosen = sorted((known[name] for name in names), key=lambda material: material.density)

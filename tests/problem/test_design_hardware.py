@@ -239,6 +239,8 @@ def test_designs_name_torques_walls_and_models() -> None:
         ),
         (WALL + THIN, ["design.wall[0].material", "or a [[design.density]] of 'l_arm'"]),
         (WALL + THIN + 'material = "aluminum_6061"\n', ["did you mean 'aluminium_6061'?"]),
+        (WALL + THIN + 'material = "aluminum"\n', ["did you mean 'aluminium_6061' or 'aluminium_7075'?"]),
+        (WALL + THIN + 'material = "wood"\n', ["abs, nylon_66", "stainless_304", "found 'wood'"]),
         (
             WALL + THIN + IN_ALUMINIUM + WALL.replace("arms", "more") + THIN,
             ["a link in one parameter of a kind"],

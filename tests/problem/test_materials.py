@@ -94,6 +94,7 @@ def test_check_shows_the_materials_with_their_sources(small: DesignProblem) -> N
         (BOUNDS + CHOSEN, OWN, ["design.density[0].materials", "either materials or bounds", "both"]),
         (CHOSEN, "", ["materials[1]", "'shell'", "a material of the catalogue"]),
         ('materials = ["aluminum_6061", "abs"]\n', "", ["materials[0]", "did you mean 'aluminium_6061'?"]),
+        ('materials = ["aluminum", "abs"]\n', "", ["'aluminium_6061' or 'aluminium_7075'?"]),
         ('materials = ["abs", "peek", "abs"]\n', "", ["materials[2]", "each material once", "'abs' twice"]),
         ('materials = ["abs"]\n', "", ["materials", "at least two materials", "found 1"]),
         ("materials = []\n", "", ["materials", "at least two materials", "found 0"]),
