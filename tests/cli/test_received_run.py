@@ -176,7 +176,7 @@ def outcomes(work: Path, names: tuple[str, ...]) -> dict[str, tuple[int, str, st
         "PYTHONPATH": f"{ROOT}{os.pathsep}{work}",
         "PYTHONDONTWRITEBYTECODE": "1",
     }
-    for name in ("EVODESIGN_CACHE", "EVODESIGN_MODULES"):
+    for name in ("EVODESIGN_CACHE", "EVODESIGN_MODULES", "PYTHONPYCACHEPREFIX"):
         environment.pop(name, None)
     command = [*other_user()[0], sys.executable, received.__file__, str(work), *names]
     subprocess.run(command, cwd=work, env=environment, check=True, timeout=600)
