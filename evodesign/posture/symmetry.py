@@ -209,6 +209,8 @@ def half(agent: Agent) -> Form:
             wanted = "hands and feet in pairs, one on each side"
             raise ModelError(agent.tree.name, f"{agent.name}.{each.name}", wanted, "one alone")
     for noun, contacts in (("hands", agent.hands), ("soles", agent.feet)):
+        if not contacts:
+            continue
         frames = {each.side: each.frame for each in contacts}
         if mirror.links[frames["left"]] != frames["right"]:
             found = f"'{frames['left']}' and '{frames['right']}'"

@@ -187,3 +187,11 @@ def test_joint_without_its_partner_is_refused(problem: DesignProblem) -> None:
     with pytest.raises(ModelError, match="'jLeftKnee_roty' without 'jRightKnee_roty'"):
         half(lame)
     assert lame.name == HUMAN
+
+
+def test_who_stands_and_holds_nothing_has_a_half(problem: DesignProblem) -> None:
+    robot = problem.scene.robot
+    left = half(replace(robot, contacts=robot.feet))
+    assert left.hands == ()
+    assert left.feet == half(robot).feet
+    assert left.joints == half(robot).joints
