@@ -145,8 +145,9 @@ def _trunk(plan: BodyPlan) -> Group:
         joint = nexts[i].joint
         if joint is None or joint.parent not in plan.trunk[i].links:
             continue  # it hangs on the next one, where the root is the chest
-        for link, _ in _on_the_way(plan.welded, plan.trunk[i], joint.parent, ends[i]):
-            if _grows_along(plan.welded, link, way):
+        for link, own in _on_the_way(plan.welded, plan.trunk[i], joint.parent, ends[i]):
+            rises_itself = link == plan.welded.tree.root or own[2] >= SHORTEST  # a root grows both ways
+            if rises_itself and _grows_along(plan.welded, link, way):
                 return Group("trunk", (link,), rises[i])
     return Group("trunk", (), 0.0, "no link of the trunk grows upwards")
 

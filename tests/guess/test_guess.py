@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from evodesign.body.placement import Placement, Vector
-from evodesign.body.shape import Box, Sphere
+from evodesign.body.shape import Box, Solid, Sphere
 from evodesign.errors import ModelError
 from evodesign.guess.body_plan import BodyPlan, body_plan
 from evodesign.guess.contacts import contacts
@@ -105,6 +105,22 @@ def test_segments_are_the_longest_on_either_side_of_knee_and_elbow() -> None:
         "shank": (("left_shank", "right_shank"), pytest.approx(0.36)),
         "trunk": (("chest",), pytest.approx(0.36)),
     }
+
+
+def test_a_chest_whose_frame_is_at_the_shoulders_is_lifted_by_the_link_below_it() -> None:
+    """It grows upwards too, but carries the shoulders where its growth begins."""
+    tree, up = humanoid(Build()), Placement(translation=(0.0, 0.0, 0.36))
+    chest = tree.link_by_name["chest"]
+    head = Solid(Box(0.1, 0.1, 0.3), Placement(translation=(0.0, 0.0, 0.15)), 600.0)
+    links = [replace(chest, name="spine")]
+    links += [replace(link, solids=(head,)) if link is chest else link for link in tree.links]
+    joints = [Joint("top", JointKind.FIXED, "spine", "chest", up)]
+    for joint in tree.joints:
+        place, child = joint.parent_from_child, "spine" if joint.child == "chest" else joint.child
+        lowered = up.inverse @ place if joint.parent == "chest" else place
+        joints.append(replace(joint, child=child, parent_from_child=lowered))
+    found = groups(body_plan(Tree("slim", tuple(links), tuple(joints))))
+    assert [group.links for group in found if group.name == "trunk"] == [("spine",)]
 
 
 @pytest.mark.parametrize("facing", Facing)
