@@ -178,12 +178,14 @@ def _masses(robot: Agent) -> str:
     mass = _mass(robot.tree)
     if not LIGHTEST <= mass <= HEAVIEST:
         raise InputError("robot.urdf", "", f"a robot of {LIGHTEST:g} to {HEAVIEST:g} kg", f"{mass:.4g} kg")
-    for name in robot.joints:
-        joint = robot.tree.joint_by_name[name]
+    moving = [robot.tree.joint_by_name[name] for name in robot.joints]
+    for joint in moving:
         if joint.lower == joint.upper:
-            found = f"'{name}', whose limits are both {joint.lower:g}"
+            found = f"'{joint.name}', whose limits are both {joint.lower:g}"
             raise InputError("robot.joints", "", "joints that can move; leave others out", found)
-    return f"{mass:.4g} kg, {len(robot.joints)} joints that move"
+    endless = [joint.name for joint in moving if not math.isfinite(joint.upper - joint.lower)]
+    without = f", {len(endless)} of them without limits: {listed(endless)}" if endless else ""
+    return f"{mass:.4g} kg, {len(robot.joints)} joints that move{without}"
 
 
 def _shapes(tree: Tree) -> str:
@@ -257,7 +259,10 @@ def _holds(problem: DesignProblem) -> str:
     case, reach = result.cases[0], result.reach
     if reach.lowest is None or reach.highest is None:
         key, who = ("robot.hands", "the robot") if scene.robots else ("payload", "people")
-        wanted = f"hands that can hold the load in front of {who} at some height"
+        wanted = (
+            f"hands that can hold the load in front of {who} at some height; a smaller payload.size_m or "
+            "limits.trunk_clearance_m may do"
+        )
         raise InputError(key, "", wanted, f"none ({reach.reason})")
     within = tuple(task for task in problem.holds if reach.beyond(task.heights) == 0.0)
     beyond = ", ".join(f"{task.height_m:g}" for task in problem.holds if task not in within)

@@ -6,6 +6,7 @@ What could not be guessed is `FILL IN` in the file, which no key may be, so that
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -112,7 +113,11 @@ def _robot(plan: BodyPlan, found: Contacts) -> Iterable[str]:
     yield f"hands = {_inline(hands)}{marked}"
     yield _soles(plan, found)
     yield f"trunk = {json.dumps(_trunk_frames(plan))}  # keeps a distance from the load"
-    yield f"knee_flexion_deg = {KNEE_FLEXION}  # at least: straight legs hold any load for nothing"
+    knees = [leg.bodies[leg.bend].joint for leg in plan.legs.values()]
+    if all(knee is not None and math.isfinite(knee.upper - knee.lower) for knee in knees):
+        yield f"knee_flexion_deg = {KNEE_FLEXION}  # at least: straight legs hold any load for nothing"
+    else:
+        yield "# no knee_flexion_deg: knees without limits may bend to either side"
     yield "joints = ["
     yield from (f"    {json.dumps(name)}," for name in plan.joints)
     yield "]"

@@ -50,7 +50,7 @@ def bent_ranges(
         key: that asks for it, for messages.
         source: the problem, likewise.
     Raises:
-        InputError: a limb has no joint that bends it so far.
+        InputError: a limb has no joint that bends it so far, or one without limits.
     """
     frames = link_frames(agent.tree, Placement(), {})
     places = {name: np.array(frame.translation, float) for name, frame in frames.items()}
@@ -70,8 +70,11 @@ def bent_ranges(
         wanted = f"at most what the {side} limb above '{frame_of[side]}' bends"
         if bend is None:
             raise InputError(source.path, key, wanted, "a limb without a joint between its ends")
-        own = _bent(hinges, bend, places[frame_of[side]], flexion)
         joint = hinges[bend].joint
+        if not math.isfinite(joint.upper - joint.lower):
+            wanted = f"limits of '{joint.name}', which say to which side it bends"
+            raise InputError(source.path, key, wanted, "a joint without limits")
+        own = _bent(hinges, bend, places[frame_of[side]], flexion)
         if own is None:
             degrees = [f"{math.degrees(limit):g}" for limit in (joint.lower, joint.upper)]
             found_range = f"{math.degrees(flexion):g}, and '{joint.name}' from {' to '.join(degrees)} deg"

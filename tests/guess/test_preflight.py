@@ -11,13 +11,14 @@ from dataclasses import replace
 import pytest
 
 from evodesign.body.placement import Placement
+from evodesign.errors import InputError
 from evodesign.guess.preflight import preflight
 from evodesign.guess.problem_text import guessed_problem
 from evodesign.hardware.catalogue import catalogue
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.records import ProblemSource
 from evodesign.tree.frames import parent_from_child
-from evodesign.tree.model import Joint, Link, Tree
+from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.urdf_write import urdf_text
 from tests.guess.humanoid import Build, humanoid
 
@@ -133,6 +134,31 @@ def test_a_robot_without_shapes_passes_and_is_told_what_is_left_out() -> None:
     assert (
         found["has shapes"].found == "0 of 26 links with a mass: collisions and pictures leave the robot out"
     )
+
+
+def test_a_robot_without_limits_of_joints_is_told_of_them_and_keeps_no_knees_bent(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As in MJCF files that leave ranges to the controller: nothing says to which side a knee bends."""
+    for each in ("_holds", "_people"):
+        monkeypatch.setattr(f"evodesign.guess.preflight.{each}", lambda _: "not tried, for time")
+    joints = [replace(each, lower=-math.inf, upper=math.inf) for each in humanoid(Build()).joints]
+    kinds = {JointKind.REVOLUTE: JointKind.CONTINUOUS}
+    endless = replace(
+        humanoid(Build()),
+        joints=tuple(replace(each, kind=kinds.get(each.kind, each.kind)) for each in joints),
+    )
+    text = guessed_problem(endless, "robot.urdf").text
+    assert "# no knee_flexion_deg: knees without limits may bend to either side" in text
+    files = {"robot.urdf": urdf_text(endless)}
+    problem = build_problem(ProblemSource(path=PATH, text=text + SOLVER, files=files))
+    found = {finding.item: finding.found for finding in preflight(problem)}
+    assert ", 19 joints that move, 19 of them without limits: " in found["masses and limits"]
+    asked = put("# no knee", "knee_flexion_deg = 15\n# no knee")(text)
+    with pytest.raises(
+        InputError, match=r"knee_flexion_deg: wanted limits of 'left_knee', which say to which"
+    ):
+        build_problem(ProblemSource(path=PATH, text=asked + SOLVER, files=files))
 
 
 @pytest.mark.parametrize("yaw", [math.pi / 2.0, math.pi, -math.pi / 2.0])
