@@ -180,6 +180,15 @@ def _facing(welded: WeldedTree, legs: list[Limb], lateral: int) -> tuple[Facing 
     return facing, f"{' and '.join(agree)} say so{but}"
 
 
+def opposite_knees(plan: BodyPlan) -> tuple[str, ...]:
+    """Names of the knees where one bends ahead and the other back; none otherwise."""
+    knees = [leg.bodies[leg.bend].joint for leg in plan.legs.values()]
+    bent = [_bent(plan.welded, leg, Facing.FORWARD.ahead) for leg in plan.legs.values()]
+    sideways = [_bent(plan.welded, leg, Facing.LEFT.ahead) for leg in plan.legs.values()]
+    opposite = any(min(ways) < -SIGNIFICANT and max(ways) > SIGNIFICANT for ways in (bent, sideways))
+    return tuple(knee.name for knee in knees if knee is not None) if opposite else ()
+
+
 SIDE_NAMES = (("left", "right"), ("Left", "Right"), ("LEFT", "RIGHT"), ("l", "r"), ("L", "R"))
 
 

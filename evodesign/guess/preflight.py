@@ -20,7 +20,7 @@ from evodesign.collision.shapes import solids_of
 from evodesign.design.parameter import DesignParameter, ParameterKind
 from evodesign.errors import InputError, listed
 from evodesign.evaluation.evaluate import Evaluator
-from evodesign.guess.body_plan import body_plan
+from evodesign.guess.body_plan import body_plan, opposite_knees
 from evodesign.mechanics.agent import SIDES, Agent
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.formulations.reach import Reach, people_reach
@@ -143,6 +143,9 @@ def _faces(problem: DesignProblem) -> str:
         plan = body_plan(problem.scene.designed_tree)
     except InputError:
         return "not known: no two legs of three joints"
+    if knees := opposite_knees(plan):
+        found = f"'{knees[0]}' and '{knees[1]}', whose axes or limits bend one ahead and one back"
+        raise InputError("robot.urdf", "", "knees that bend to one side", found)
     if plan.facing in (Facing.FORWARD, None):
         return plan.why
     tables = decode_toml(problem.source.text, problem.source.path, ProblemFile)

@@ -200,6 +200,11 @@ LYING = Placement.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, math.pi / 2.0, 0.0))
             r"robot\.soles: wanted soles at one height .*, found one 0\.\d\d m above the other",
         ),
         (
+            with_limits(humanoid(Build()), right_knee=(-2.4, 0.05)),
+            lambda text: text,
+            r"robot\.urdf: wanted knees that bend to one side, found 'left_knee' and 'right_knee'",
+        ),
+        (
             humanoid(Build()),
             exchanged("soles", "sole"),
             r"robot\.soles: wanted the left one to the left .*, found them exchanged",
@@ -241,6 +246,7 @@ LYING = Placement.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, math.pi / 2.0, 0.0))
         "soles that are one link",
         "lying down",
         "a sole on a hand",
+        "a knee that bends back",
         "soles exchanged",
         "hands exchanged",
         "hands that are one link",
