@@ -81,7 +81,7 @@ def body_plan(tree: Tree) -> BodyPlan:
     """The body plan of a robot of numbers.
 
     Raises:
-        ModelError: it has no two legs, or does not stand on them with z up.
+        ModelError: it has no masses or no two legs, or does not stand on them with z up.
     """
     welded = WeldedTree(tree)
     pairs = sorted(limb_pairs(welded), key=lambda pair: pair.lowest)
@@ -104,6 +104,8 @@ def body_plan(tree: Tree) -> BodyPlan:
 def _legs(welded: WeldedTree, pairs: Sequence[LimbPair]) -> LimbPair:
     """The pair of limbs that reaches lowest, or the reason why it carries no humanoid."""
     solid = [body for body in welded.bodies.values() if body.inertia.mass]
+    if not solid:
+        raise ModelError(welded.tree.name, "", "links with masses", "none")
     lowest = min(solid, key=lambda body: float(body.inertia.center[2]))
     bottom = float(lowest.inertia.center[2])
     near = 0.1 * (max(float(body.inertia.center[2]) for body in solid) - bottom)

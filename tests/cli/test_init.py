@@ -132,8 +132,12 @@ def test_what_cannot_be_guessed_is_marked_and_named_by_check(
     [
         ("<robot", "wanted a URDF file, found text that is not XML"),
         (urdf_text(humanoid(Build(horse=True))), "wanted two legs, found four or more"),
+        (
+            re.sub(r"(?s)<inertial>.*?</inertial>", "", urdf_text(humanoid(Build()))),
+            "humanoid: wanted links with masses, found none",
+        ),
     ],
-    ids=["no XML", "a horse"],
+    ids=["no XML", "a horse", "no masses"],
 )
 def test_a_file_of_which_no_problem_can_be_made_is_refused_in_a_sentence(
     text: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
