@@ -29,6 +29,7 @@ from evodesign.problem.agent_tables import Facing
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.source import decode_toml
+from evodesign.searches.registry import make_asynchronous_search, make_search
 from evodesign.tree.model import Tree
 from evodesign.tree.welded import WeldedTree, without_frames
 
@@ -83,6 +84,8 @@ def preflight(problem: DesignProblem) -> tuple[Finding, ...]:
         if (parameter.links or parameter.joints) and not parameter.is_fixed:
             words, value = _other(parameter, space.unscaled(robot.tree)[index])
             items[f"{parameter.name} {words}"] = functools.partial(_changes, problem, equipped, index, value)
+    if space.free:
+        items["can be searched"] = lambda: _search(problem)
     found = [_tried(name, item) for name, item in items.items()]
     return tuple(found) if any(finding.fault for finding in found) else (*found, *_solved(problem))
 
@@ -201,6 +204,14 @@ def _shapes(tree: Tree) -> str:
 
 def _mass(tree: Tree) -> float:
     return sum(float(link.inertia.mass) for link in tree.links)
+
+
+def _search(problem: DesignProblem) -> str:
+    """What searches, made as a search begins with it."""
+    settings = problem.settings()
+    make = make_asynchronous_search if settings.asynchronous else make_search
+    make(settings)
+    return f"by {settings.algorithm}, in {len(problem.space.free)} parameters"
 
 
 def _other(parameter: DesignParameter, value: float) -> tuple[str, float]:

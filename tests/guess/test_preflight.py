@@ -82,6 +82,7 @@ def test_a_guessed_problem_passes_and_says_what_was_found() -> None:
         "masses and limits",
         "has shapes",
         *(f"length.{name} + 10%" for name in ("upper_arm", "forearm", "thigh", "shank", "trunk")),
+        "can be searched",
         "holds the load",
         "people reach it",
     ]
@@ -238,6 +239,11 @@ LYING = Placement.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, math.pi / 2.0, 0.0))
         ),
         (
             humanoid(Build()),
+            put('algorithm = "surrogate"', 'algorithm = "surogate"'),
+            r"search: algorithm: wanted one of .*, found 'surogate'; did you mean 'surrogate'\?",
+        ),
+        (
+            humanoid(Build()),
             lambda text: re.sub(r"heights_m = .*", "heights_m = [2.5, 3.0]", text),
             r"task\.heights_m: wanted a height that the robot reaches, from .* m, found 2\.5, 3",
         ),
@@ -253,6 +259,7 @@ LYING = Placement.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, math.pi / 2.0, 0.0))
         "a hand on the chest",
         "a joint without a range",
         "hands behind the back",
+        "a misspelt algorithm",
         "heights out of reach",
     ],
 )
