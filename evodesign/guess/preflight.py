@@ -211,7 +211,7 @@ def _search(problem: DesignProblem) -> str:
     settings = problem.settings()
     make = make_asynchronous_search if settings.asynchronous else make_search
     make(settings)
-    return f"by {settings.algorithm}, in {len(problem.space.free)} parameters"
+    return f"by {settings.algorithm}; free parameters: {settings.dimension}"
 
 
 def _other(parameter: DesignParameter, value: float) -> tuple[str, float]:

@@ -60,7 +60,8 @@ def read_mesh(path: Path, most: int, source: str, key: str) -> Surface:
     """
     kind = path.suffix.lower()
     if kind not in KINDS:
-        raise InputError(source, key, f"a mesh file ({', '.join(KINDS)})", f"'{path}'")
+        wanted = f"a mesh file ({', '.join(KINDS)}); [robot] meshes = false leaves meshes out"
+        raise InputError(source, key, wanted, f"'{path}'")
     try:
         with path.open("rb") as file:
             content = file.read(MOST_BYTES + 1)

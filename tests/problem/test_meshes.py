@@ -162,7 +162,7 @@ def test_packages_are_found_where_problem_environment_and_robot_say(tmp_path: Pa
         ("a.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 9", "a mesh of triangles"),
         ("a.obj", b"v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3", "a mesh of triangles"),
         ("a.ply", b"ply\nformat ascii 1.0\nelement vertex 999999999\n", "a mesh of triangles"),
-        ("a.zip", b"PK", "a mesh file (.stl, .dae, .obj, .ply)"),
+        ("a.zip", b"PK", "a mesh file (.stl, .dae, .obj, .ply); [robot] meshes = false"),
     ],
 )
 def test_a_file_that_is_no_mesh_is_refused(tmp_path: Path, name: str, content: bytes, found: str) -> None:
