@@ -21,6 +21,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -392,12 +394,20 @@ def objective_kind(name: str) -> ObjectiveKind | None:
         if isinstance(found, ObjectiveKind) and not way:
             return found
         if isinstance(found, CaseQuantity):
-            return aggregate(found, way)
+            return aggregate(replace(found, value=lambda *case: _number(found.value(*case))), way)
         wanted = "a CaseQuantity" if way else "a CaseQuantity or an ObjectiveKind"
         raise InputError("objectives", "", wanted, f"'{quantity}', which is {type(found).__name__}")
     if way in ("", WORST) or quantity not in QUANTITIES:
         return objective_kinds().get(name)
     return aggregate(QUANTITIES[quantity], way)
+
+
+def _number(value: Any) -> float:
+    """What a function of the user's gives, as a finite number."""
+    number = float(value)
+    if not math.isfinite(number):
+        raise ValueError(f"it gives {value}, which is no finite number")
+    return number
 
 
 def split_name(name: str) -> tuple[str, str]:
@@ -423,7 +433,8 @@ def objective_value(name: str, result: DesignResult) -> float | None:
     if kind is None:
         raise KeyError(name)
     try:
-        return kind.value(result)
+        value = kind.value(result)
+        return _number(value) if is_outside(name) and value is not None else value
     except Exception as error:  # a function of the user's may raise anything
         if not is_outside(name):
             raise

@@ -26,6 +26,10 @@ load = CaseQuantity("kg", lambda scene, postures: scene.payload.mass)
 joints = ObjectiveKind("1", lambda result: float(len(result.robot.joints)))
 mistaken = ObjectiveKind("1", lambda result: 1 / 0)
 number = 3
+words = ObjectiveKind("1", lambda result: "heavy")
+endless = ObjectiveKind("1", lambda result: float("nan"))
+several = CaseQuantity("kg", lambda scene, postures: [1.0, 2.0])
+missing = CaseQuantity("kg", lambda scene, postures: None)
 
 class Middle:
     def __init__(self, settings):
@@ -154,3 +158,20 @@ def test_a_function_that_fails_is_told_in_a_sentence_with_its_line() -> None:
         InputError, match=f"^objectives: wanted a function that gives a value, or None, {fails}"
     ):
         objective_value("of_mine:mistaken", cast("DesignResult", None))
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("words", "could not convert string to float: 'heavy'"),
+        ("endless", "it gives nan, which is no finite number"),
+        ("several", "not 'list'"),
+        ("missing", "not 'NoneType'"),
+    ],
+)
+def test_what_is_no_finite_number_is_no_value(name: str, words: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a list the mean was taken, and text failed where gradients are differenced."""
+    once = "evodesign.quantities.design_result.values_over_cases"
+    monkeypatch.setattr(once, lambda value, result: [value(None, None)])
+    with pytest.raises(InputError, match=f"'of_mine:{name}', which fails: .*{words}"):
+        objective_value(f"of_mine:{name}", cast("DesignResult", None))
