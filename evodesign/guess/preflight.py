@@ -1,10 +1,7 @@
 """What could be wrong with a robot though its files can be read, looked at before anything long begins.
 
 Each item either passes, with what was found, or fails with a sentence that names key, fault and remedy.
-Places are those with all joints at zero. The last items solve: the reach of the robot as it is in its file
-and the posture at one height within, then the reach of each person. A height outside of the robot's reach is
-refused where robots of the shortest and longest lengths do not reach it either. Reach is solved for without
-`[collisions]`, of which the robot's colliding pairs would have to be found first, in a minute.
+Places are those with all joints at zero. The last items solve (`heights_held`).
 """
 
 from __future__ import annotations
@@ -12,26 +9,23 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from evodesign.body.inertia import total
 from evodesign.body.placement import Placement, Vector, rotate
 from evodesign.collision.shapes import solids_of
-from evodesign.design.parameter import DesignParameter, ParameterKind
+from evodesign.design.parameter import DesignParameter
 from evodesign.errors import InputError, listed
-from evodesign.evaluation.evaluate import Evaluator
 from evodesign.guess.body_plan import body_plan, opposite_knees
+from evodesign.guess.heights_held import holds, people_hold
 from evodesign.mechanics.agent import SIDES, Agent
-from evodesign.mechanics.scene import Scene
-from evodesign.posture.formulations.reach import Reach, people_reach
-from evodesign.posture.postures import Symmetry
 from evodesign.problem.agent_tables import Facing
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.source import decode_toml
 from evodesign.searches.registry import make_asynchronous_search, make_search
 from evodesign.tree.model import Tree
-from evodesign.tree.welded import WeldedTree, without_frames
+from evodesign.tree.welded import WeldedTree
 
 LIGHTEST, HEAVIEST = 1.0, 500.0
 """Masses [kg] between which a robot is one that people build."""
@@ -47,14 +41,6 @@ FEWEST_JOINTS = 3
 
 LONGER, LEAST_CHANGE = 1.1, 1e-6
 """Multiplier with which a parameter is tried, and a change of the mass [kg] that is one."""
-
-WIDEST = {
-    ParameterKind.LOWER: False,
-    ParameterKind.UPPER: True,
-    ParameterKind.ACTUATOR: True,
-    ParameterKind.MARGIN: True,
-}
-"""Whether the upper bound of a parameter, not the lower, lets a robot reach farther."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +79,7 @@ def preflight(problem: DesignProblem) -> tuple[Finding, ...]:
 def _solved(problem: DesignProblem) -> tuple[Finding, ...]:
     """The items that solve."""
     both = problem.scene.robots and problem.scene.people
-    items = {"holds the load": _holds} | ({"people reach it": _people} if both else {})
+    items = {"holds the load": holds} | ({"people reach it": people_hold} if both else {})
     return tuple(_tried(name, functools.partial(item, problem)) for name, item in items.items())
 
 
@@ -248,104 +234,3 @@ def _place(tree: Tree, link: str) -> Placement:
         joint = tree.parent_joint[link]
         place, link = joint.parent_from_child @ place, joint.parent
     return place
-
-
-def _holds(problem: DesignProblem) -> str:
-    options = replace(problem.options, compiled=False)
-    scene, bare = problem.scene, problem.scene.designed_tree
-    for robot in scene.designed[:1]:
-        bare = without_frames(bare, (*(contact.frame for contact in robot.contacts), *robot.trunk))
-
-    def freed(scene: Scene) -> Scene:
-        free = (replace(each, collisions=None) for each in scene.agents)
-        return scene.with_agents(*(replace(each, tree=bare) if each.designed else each for each in free))
-
-    alone = replace(
-        problem,
-        scenes=tuple(map(freed, problem.scenes[:1] if scene.robots else problem.scenes)),
-        options=options,
-        start_portfolio=False,
-        whole_reach=True,
-    )
-    unscaled = problem.space.unscaled(scene.designed_tree)
-    middle = problem.holds[len(problem.holds) // 2]
-    result = Evaluator(replace(alone, tasks=(middle,))).solve(unscaled)
-    case, reach = result.cases[0], result.reach
-    if reach.lowest is None or reach.highest is None:
-        key, who = ("robot.hands", "the robot") if scene.robots else ("payload", "people")
-        wanted = (
-            f"hands that can hold the load in front of {who} at some height; a smaller payload.size_m or "
-            "limits.trunk_clearance_m may do"
-        )
-        raise InputError(key, "", wanted, f"none ({reach.reason})")
-    within = tuple(task for task in problem.holds if reach.beyond(task.heights) == 0.0)
-    beyond = ", ".join(f"{task.height_m:g}" for task in problem.holds if task not in within)
-    found = f"from {reach.lowest:.2f} to {reach.highest:.2f} m"
-    if not within:
-        who = "the robot reaches" if scene.robots else "everyone reaches"
-        raise InputError("task.heights_m", "", f"a height that {who}, {found}", beyond)
-    if beyond:
-        _refuse_beyond_every_design(problem, replace(alone, tasks=within[:1]), reach)
-    if middle not in within:
-        case = Evaluator(replace(alone, tasks=within[:1])).solve(unscaled).cases[0]
-    if not case.solved:
-        wanted = f"a posture with the load at {case.case.task}"
-        raise InputError("task.heights_m", "", wanted, f"{case.status}: {case.reason}")
-    out = f"; out of reach unless a design reaches farther: {beyond} m" if beyond else ""
-    apart = "" if scene.agents[0].collisions is None else ", [collisions] aside"
-    return f"{found}; a posture at {case.case.task} is solved{apart}{out}"
-
-
-def _refuse_beyond_every_design(problem: DesignProblem, alone: DesignProblem, reach: Reach) -> None:
-    """Refuse heights that no robot of the extreme lengths reaches; where joints may move, nobody knows.
-
-    Args:
-        problem: whose heights these are.
-        alone: the same as it is solved here.
-        reach: of the robot as it is.
-    """
-    free = {parameter.kind for parameter in problem.space.free}
-    if free & {ParameterKind.OFFSET, ParameterKind.TILT}:
-        return
-    ends = (False, True) if free & {ParameterKind.LENGTH, *WIDEST} else ()
-    values = [_extreme(problem, longest=longest) for longest in ends]
-    reaches = [reach, *(Evaluator(alone).solve(each).reach for each in values)]
-    known = [(each.lowest, each.highest) for each in reaches if each.lowest and each.highest]
-    lowest, highest = min(low for low, _ in known), max(high for _, high in known)
-    who = "the robot" if problem.scene.robots else "everyone"
-    design = " as it is or with lengths at either bound" if ends else ""
-    _refuse_outside(problem, f"{who} reaches{design}", lowest, highest)
-
-
-def _extreme(problem: DesignProblem, *, longest: bool) -> tuple[float, ...]:
-    """Values of the robot with its shortest or longest lengths, widest joints and strongest actuators."""
-    at_upper = {ParameterKind.LENGTH: longest, **WIDEST}
-    values = zip(problem.space.parameters, problem.space.unscaled(problem.scene.designed_tree), strict=True)
-    return tuple(
-        (each.upper if at_upper[each.kind] else each.lower) if each.kind in at_upper else value
-        for each, value in values
-    )
-
-
-def _refuse_outside(problem: DesignProblem, who: str, lowest: float, highest: float) -> None:
-    """Refuse heights of a problem [m] that are not within some."""
-    outside = {key: f"{at:g}" for key, at in problem.named_heights.items() if not lowest <= at <= highest}
-    if outside:
-        wanted = f"heights that {who}, from {lowest:.2f} to {highest:.2f} m"
-        raise InputError(listed([*outside]), "", wanted, listed([*outside.values()]))
-
-
-def _people(problem: DesignProblem) -> str:
-    """Heights that every person reaches, which no design changes; with the last load of each."""
-    options = replace(problem.options, compiled=False, seldom=True)
-    symmetric = problem.symmetry is not Symmetry.OFF
-    found = []
-    for person, scene in {scene.pair[0]: scene for scene in problem.scenes}.items():
-        reach = people_reach(scene, options, symmetric=symmetric)
-        if reach is not None:
-            _refuse_outside(problem, f"{person or 'the person'} reaches", reach.lowest, reach.highest)
-            found.append(reach)
-    if not found:
-        return "not known"
-    lowest, highest = max(each.lowest for each in found), min(each.highest for each in found)
-    return f"from {lowest:.2f} to {highest:.2f} m"

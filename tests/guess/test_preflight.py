@@ -141,7 +141,7 @@ def test_a_robot_without_limits_of_joints_is_told_of_them_and_keeps_no_knees_ben
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """As in MJCF files that leave ranges to the controller: nothing says to which side a knee bends."""
-    for each in ("_holds", "_people"):
+    for each in ("holds", "people_hold"):
         monkeypatch.setattr(f"evodesign.guess.preflight.{each}", lambda _: "not tried, for time")
     joints = [replace(each, lower=-math.inf, upper=math.inf) for each in humanoid(Build()).joints]
     kinds = {JointKind.REVOLUTE: JointKind.CONTINUOUS}
@@ -166,7 +166,7 @@ def test_a_robot_without_limits_of_joints_is_told_of_them_and_keeps_no_knees_ben
 def test_a_robot_that_looks_elsewhere_is_told_what_to_write(
     yaw: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("evodesign.guess.preflight._holds", lambda _: "not tried, for time")
+    monkeypatch.setattr("evodesign.guess.preflight.holds", lambda _: "not tried, for time")
     wrong = faults(problem_of(humanoid(Build(yaw))))
     remedy = {1: "+y", 2: "-x", 3: "-y"}[round(yaw / (math.pi / 2.0)) % 4]
     (sentence,) = [fault for fault in wrong if "robot.facing" in fault]
