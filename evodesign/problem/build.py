@@ -25,7 +25,6 @@ from evodesign.problem.agents import (
 )
 from evodesign.problem.collisions import with_collisions
 from evodesign.problem.constraints import constraints_of, refuse_constraints, with_what_can_be_built
-from evodesign.problem.descriptors import LOWEST_REACH, search_descriptors
 from evodesign.problem.design_geometry import joint_ranges_of
 from evodesign.problem.design_space import (
     check_allocations,
@@ -36,15 +35,17 @@ from evodesign.problem.design_space import (
 from evodesign.problem.designs import read_designs, start_genomes, unscaled_genome
 from evodesign.problem.file import ProblemFile, SearchTable
 from evodesign.problem.from_tables import (
+    LOWEST_REACH,
     ground_of,
     objectives_of,
+    pushes_of,
+    search_descriptors,
     space_of,
     tasks_of,
     worker_limits,
 )
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import held_by, payloads, refuse_stiff_arms, scene_disturbances
-from evodesign.problem.push_settings import pushes_of
 from evodesign.problem.samples import samples_of
 from evodesign.problem.source import decode_toml
 from evodesign.problem.stance_limits import stance_of
