@@ -60,7 +60,7 @@ def carry(
     draw_without_a_screen()
     from evodesign.cli.output import console, print_json, show_notes, write_bytes
     from evodesign.cli.progress import precompute_progress
-    from evodesign.cli.tables.carry import carries_table
+    from evodesign.cli.tables.simulation import carries_table
     from evodesign.control.gains import Feedback
     from evodesign.evaluation.carries import carried_holds, carries_json
     from evodesign.evaluation.pushes import pushed_holds

@@ -62,7 +62,7 @@ def push(
     refuse_without_a_controller(engine)
     from evodesign.cli.output import console, print_json, show_notes
     from evodesign.cli.progress import precompute_progress
-    from evodesign.cli.tables.push import margins_table
+    from evodesign.cli.tables.simulation import margins_table
     from evodesign.control.gains import Feedback
     from evodesign.evaluation.pushes import found_margins, margins_json
     from evodesign.report.opened_design import open_design
@@ -122,7 +122,7 @@ def push_once(
     draw_without_a_screen()
     from evodesign.cli.output import console, print_json, write_bytes
     from evodesign.cli.progress import precompute_progress
-    from evodesign.cli.tables.push import pushes_table
+    from evodesign.cli.tables.simulation import pushes_table
     from evodesign.control.gains import Feedback
     from evodesign.evaluation.pushes import outcome_json
     from evodesign.report.opened_design import open_design

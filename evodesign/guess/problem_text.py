@@ -10,11 +10,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from evodesign.guess.body_plan import BodyPlan, body_plan
-from evodesign.guess.bounds import LengthBound, length_bounds
 from evodesign.guess.contacts import Contacts, GuessedContact, contacts, frame_xyz_rpy
 from evodesign.guess.hardware_text import hardware_text
 from evodesign.guess.heights import held_heights
-from evodesign.guess.parameters import Group, LoadGuess, groups, load_guess
+from evodesign.guess.parameters import Group, LengthBound, LoadGuess, groups, length_bounds, load_guess
 from evodesign.mechanics.agent import SIDES
 from evodesign.problem.agent_tables import Facing
 from evodesign.problem.table import FILL_IN

@@ -29,19 +29,14 @@ def captions(bill: Mapping[str, Any]) -> str:
     return "\n".join(printable(each) for each in (clearance_in_words(bill), *bill["governs"]) if each)
 
 
-def actuators_table(bill: Mapping[str, Any], title: str = "") -> FittedTable:
-    """The actuators of a bill, each with the joint of its group that is used most.
-
-    Args:
-        bill: of materials.
-        title: of the table.
-    """
+def actuators_table(bill: Mapping[str, Any]) -> FittedTable:
+    """The masses of a bill of materials, and its actuators, each with the joint that is used most."""
     columns = [
         *names("actuator"),
         *numbers("joints", "rated [N m]", "peak [N m]", "kg each", "used"),
         *names("most by", "joint"),
     ]
-    table = titled(title, columns, caption=captions(bill))
+    table = titled(mass_title(bill), columns, caption=captions(bill))
     groups: dict[str, dict[str, Mapping[str, Any]]] = {}
     for joint, row in bill["joints"].items():
         groups.setdefault(row["actuator"], {})[joint] = row

@@ -9,15 +9,21 @@ from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.records import Assessment, CaseOutcome, Lift, Status
 
 
-def cases_table(assessment: Assessment, title: str) -> FittedTable:
-    """A design's postures in short, height by height; of several people or loads, case by case.
-
-    Of a lift the largest torques count.
+def case_tables(assessment: Assessment, remark: str = "") -> list[FittedTable]:
+    """A design's postures in short, height by height; of several people or loads a summary, then each case.
 
     Args:
         assessment: of the design.
-        title: over the table; empty for none.
+        remark: what follows the title of the cases.
     """
+    if any(outcome.case.label for outcome in assessment.cases):
+        title = f"the load in each case, torques in N m{remark}"
+        return [summary_table(assessment), cases_table(assessment, title)]
+    return [cases_table(assessment, f"the load at each height{remark}")]
+
+
+def cases_table(assessment: Assessment, title: str) -> FittedTable:
+    """A row for each case; of a lift the largest torques count."""
     outcomes = assessment.cases
     labels, moves = _name_columns(outcomes), any(isinstance(each.case.task, Lift) for each in outcomes)
     roles, unit = _roles(outcomes), "" if labels else " [N m]"
@@ -57,14 +63,15 @@ def _status(outcome: CaseOutcome) -> str:
     return outcome.status if outcome.status == "solved" else f"{outcome.status}: {outcome.reason}"
 
 
-def summary_table(assessment: Assessment, title: str) -> FittedTable:
+def summary_table(assessment: Assessment) -> FittedTable:
     """Torque norms [N m] over all cases, and over those with each person or load, or at each height.
 
     Torques under disturbances count as the objectives count them, each beside the undisturbed one.
     """
     outcomes = assessment.cases
     measured = (column for role in _roles(outcomes) for column in (f"{role} mean", "worst"))
-    table = titled(title, [*names("cases"), *numbers("solved", *measured)])
+    columns = [*names("cases"), *numbers("solved", *measured)]
+    table = titled("torque norms |tau| over the cases [N m]", columns)
     roles = _roles(outcomes)
     _add_summary(table, "all", outcomes, roles, last=True)
     groups = [*_name_columns(outcomes).values(), _height]

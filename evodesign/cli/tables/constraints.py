@@ -9,18 +9,15 @@ from evodesign.records import Assessment, Constraint
 from evodesign.violations import bounds_text, violations
 
 
-def constraints_table(
-    constraints: Sequence[Constraint], title: str, *columns: tuple[str, Assessment]
-) -> FittedTable:
+def constraints_table(constraints: Sequence[Constraint], *columns: tuple[str, Assessment]) -> FittedTable:
     """Each constraint with its bounds, and its value in some designs and by how much the last violates it.
 
     Args:
         constraints: of the problem.
-        title: over the table; empty for none.
         columns: a heading for the value in each design, and the design.
     """
     headings = numbers(*(heading for heading, _ in columns))
-    table = titled(title, [*names("constraint", "bounds"), *headings, *numbers("violation")])
+    table = titled("constraints", [*names("constraint", "bounds"), *headings, *numbers("violation")])
     found = violations(constraints, columns[-1][1])
     for constraint in constraints:
         values = [assessment.constrained.get(constraint.name) for _, assessment in columns]

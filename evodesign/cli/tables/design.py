@@ -7,12 +7,11 @@ from collections.abc import Iterator, Mapping, Sequence
 import msgspec
 
 from evodesign.cli.output import heading, interval
-from evodesign.cli.tables.bill import actuators_table, mass_title
-from evodesign.cli.tables.cases import cases_table, summary_table
+from evodesign.cli.tables.bill import actuators_table
+from evodesign.cli.tables.cases import case_tables
 from evodesign.cli.tables.constraints import constraints_table, violation_heading
-from evodesign.cli.tables.effort import effort_table
-from evodesign.cli.tables.limits import TITLE, limits_table
-from evodesign.cli.tables.people import people_table
+from evodesign.cli.tables.limits import limits_table
+from evodesign.cli.tables.people import effort_table, people_table
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.evaluation.bill import bill_of_materials
 from evodesign.evaluation.evaluate import detail_of
@@ -46,18 +45,18 @@ def design_tables(
     """
     yield from _assessment_tables(problem, name, result, assessment)
     if bill := bill_of_materials(problem, result.tree, solved):
-        yield actuators_table(bill, mass_title(bill))
+        yield actuators_table(bill)
     if solved and result.scenes[0].people:
         yield from _people_tables(result)
     if any(each.limits for each in solved):
-        yield limits_table(solved, TITLE)
+        yield limits_table(solved)
     if sensitivities:
         yield _sensitivity_table(problem, sensitivities)
 
 
 def _assessment_tables(
     problem: DesignProblem, name: str, result: DesignResult, assessment: Assessment
-) -> tuple[FittedTable, ...]:
+) -> Iterator[FittedTable]:
     """Its objectives, constraints and postures case by case, with a summary where there are many cases."""
     summary = titled(f"{problem.name}: {name}", [*names("objective"), *numbers("value")])
     for objective in problem.objectives:
@@ -66,16 +65,10 @@ def _assessment_tables(
     summary.add_row(violation_heading(problem.constraints), assessment.violation)
     reach = result.reach
     summary.add_row("reach [m]", interval(reach.lowest, reach.highest, or_lower=reach.or_lower))
-    constraints = problem.constraints
-    bounds = [constraints_table(constraints, "constraints", ("value", assessment))] if constraints else []
-    if not any(outcome.case.label for outcome in assessment.cases):
-        return summary, *bounds, cases_table(assessment, "the load at each height")
-    return (
-        summary,
-        *bounds,
-        summary_table(assessment, "torque norms |tau| over the cases [N m]"),
-        cases_table(assessment, "the load in each case, torques in N m"),
-    )
+    yield summary
+    if problem.constraints:
+        yield constraints_table(problem.constraints, ("value", assessment))
+    yield from case_tables(assessment)
 
 
 def _people_tables(result: DesignResult) -> tuple[FittedTable, FittedTable]:
@@ -89,7 +82,7 @@ def _people_tables(result: DesignResult) -> tuple[FittedTable, FittedTable]:
         for one in solved
         for person in result.scene_of(one.case).people
     ]
-    return people_table(asked, titled=True), effort_table(asked, titled_too=True)
+    return people_table(asked), effort_table(asked)
 
 
 def _sensitivity_table(

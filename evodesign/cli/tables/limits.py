@@ -20,13 +20,8 @@ CAPTION = (
 Identity = tuple[str, str, str, bool]
 
 
-def limits_table(cases: Sequence[CaseDetail], title: str) -> FittedTable:
-    """A row for each limit that is active in some case, those of the largest price first.
-
-    Args:
-        cases: postures, one of each case.
-        title: over the table; empty for none.
-    """
+def limits_table(cases: Sequence[CaseDetail]) -> FittedTable:
+    """A row for each limit that is active in some of the cases, those of the largest price first."""
     by_case = [{limit.identity: limit for limit in case.limits} for case in cases]
     known = {identity: limit for limits in by_case for identity, limit in limits.items()}
     changes: dict[Identity, list[float | None]] = {
@@ -36,7 +31,7 @@ def limits_table(cases: Sequence[CaseDetail], title: str) -> FittedTable:
     measured = (
         numbers(*(case.case.name for case in cases)) if few else numbers("active in", "mean", "largest")
     )
-    table = titled(title, [*names("agent", "limit", "step"), *measured], keys=3, caption=CAPTION)
+    table = titled(TITLE, [*names("agent", "limit", "step"), *measured], keys=3, caption=CAPTION)
     for agent in dict.fromkeys(limit.agent for limit in known.values()):
         own = [identity for identity in known if identity[0] == agent]
         own.sort(key=lambda identity: -max(abs(change or 0.0) for change in changes[identity]))

@@ -29,7 +29,7 @@ def polish_tables(problem: DesignProblem, number: int, done: Polished) -> tuple[
         if after != before:
             parameters.add_row(name, before, after)
     held = (("before", done.before), ("after", done.after))
-    bounds = [constraints_table(problem.constraints, "constraints", *held)] if problem.constraints else []
+    bounds = [constraints_table(problem.constraints, *held)] if problem.constraints else []
     return objectives, *bounds, parameters
 
 

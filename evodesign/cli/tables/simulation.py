@@ -1,14 +1,22 @@
-"""Simulations as a table for people."""
+"""Simulations, pushes and walks with the load as tables for people."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.control.gains import Feedback
-from evodesign.evaluation.simulations import SimulatedCase
 from evodesign.simulation.outcome import SETTLED
+
+if TYPE_CHECKING:
+    from evodesign.evaluation.carries import CarriedCase
+    from evodesign.evaluation.pushes import FoundMargins
+    from evodesign.evaluation.simulations import SimulatedCase
+    from evodesign.simulation.push import PushOutcome
 
 
 def simulation_table(title: str, simulations: Sequence[SimulatedCase], feedback: Feedback) -> FittedTable:
@@ -36,3 +44,74 @@ def simulation_table(title: str, simulations: Sequence[SimulatedCase], feedback:
 
 def _hundredths(value: float) -> str:
     return f"{value:.2f}" if math.isfinite(value) else "-"
+
+
+def margins_table(title: str, found: FoundMargins) -> FittedTable:
+    """The margin at each moment in each direction, and the least."""
+    turns = sorted({round(float(np.degrees(each.direction)), 3) for each in found.margins})
+    least = found.least
+    caption = (
+        "impulses [N s] by direction [deg], from forwards to the left; the least is "
+        f"{least.impulse:.3g} N s: beyond it {least.reason or 'nothing larger was tried'}"
+    )
+    if found.spread:
+        changes = ", ".join(f"{name} {change:+.2g}" for name, change in found.spread.items())
+        caption += f"; it changes with {changes} N s"
+    table = titled(
+        title, [*names("moment"), *numbers(*(f"{turn:g}" for turn in turns))], keys=1, caption=caption
+    )
+    for moment in dict.fromkeys(each.moment for each in found.margins):
+        own = {
+            round(float(np.degrees(each.direction)), 3): each
+            for each in found.margins
+            if each.moment == moment
+        }
+        table.add_row(moment, *(f"{own[turn].impulse:.1f}" for turn in turns))
+    return table
+
+
+def pushes_table(title: str, outcomes: Mapping[str, PushOutcome]) -> FittedTable:
+    """What came of one push at each moment."""
+    columns = numbers("recovery [s]", "load off [mm]", "capture point off [mm]", "torque saturation [%]")
+    table = titled(title, [*names("moment"), *columns, *names("lost")], keys=1)
+    for moment, each in outcomes.items():
+        table.add_row(
+            moment,
+            "-" if each.recovery is None else f"{each.recovery:.2f}",
+            f"{1e3 * each.load_off:.1f}",
+            f"{1e3 * each.capture:.1f}",
+            f"{100.0 * each.saturation:.0f}",
+            each.reason or "no",
+        )
+    return table
+
+
+def carries_table(title: str, cases: Sequence[CarriedCase]) -> FittedTable:
+    """What each walk takes of whom, and how it ends."""
+    columns = numbers(
+        "distance [m]", "tilt [deg]", "torque [N m]", "saturation [%]", "energy [J]", "back [N]"
+    )
+    caption = (
+        "tilt: of the load, at most; torque: the largest of any joint; saturation: time with a motor at its "
+        "limit; back: compression of L5/S1, at most"
+    )
+    keys = names("hold", "agent")
+    table = titled(title, [*keys, *columns, *names("ends")], keys=2, caption=caption)
+    for case in cases:
+        outcome = case.outcome
+        if not outcome.agents:
+            table.add_row(case.name, *["-"] * 7, outcome.reason)
+        for name, agent in outcome.agents.items():
+            back = case.compression.get(name)
+            table.add_row(
+                case.name,
+                name,
+                f"{outcome.distance:.2f}",
+                f"{math.degrees(outcome.tilt):.1f}",
+                f"{agent.torque:.0f} ({agent.joint})",
+                f"{100.0 * agent.saturation:.0f}",
+                f"{case.energy[name]:.0f}" if name in case.energy else "-",
+                "-" if back is None else f"{back:.0f}",
+                outcome.reason or f"stands after {outcome.seconds:.1f} s",
+            )
+    return table

@@ -29,8 +29,7 @@ from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
 from evodesign.mechanics.agent import HUMAN, ROBOT
-from evodesign.report.figures.faces import faces_of
-from evodesign.report.figures.mesh_faces import in_world, seen_triangles
+from evodesign.report.figures.faces import faces_of, in_world, seen_triangles
 from evodesign.report.figures.paint import AGENTS, GROUND_FORCE, HAND_FORCE, INK, PALE, new_figure
 from evodesign.report.scene_models import LOAD, ContactWrench, PlacedScene
 

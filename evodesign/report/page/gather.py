@@ -32,6 +32,7 @@ from evodesign.problem.notes import assumed_heights
 from evodesign.records import Detail, Evaluation, Hold, Lift, Task, evenly
 from evodesign.report.page import marks
 from evodesign.report.page.bodies import bodies, changes
+from evodesign.report.page.card import StaticTorques, effort_content, hardware_content, over_people
 from evodesign.report.page.content import (
     CauseContent,
     ClearanceContent,
@@ -42,12 +43,8 @@ from evodesign.report.page.content import (
     StopContent,
 )
 from evodesign.report.page.downloads import Downloads, rounded
-from evodesign.report.page.effort import effort_content
-from evodesign.report.page.hardware import hardware_content
 from evodesign.report.page.marks import MOST_POINTS, chosen_points, points
-from evodesign.report.page.over_people import over_people
 from evodesign.report.page.postures import MOMENTS, details_shown, shown_cases
-from evodesign.report.page.static_torques import StaticTorques
 from evodesign.report.subset import subsample
 from evodesign.runlog.run import RunLog
 from evodesign.runlog.sampled_file import read_sampled

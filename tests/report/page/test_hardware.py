@@ -16,7 +16,7 @@ from evodesign.problem.source import read_source
 from evodesign.quantities.hardware_quantities import winding_temperature
 from evodesign.records import Detail, Evaluation, Hold
 from evodesign.report.page import page_content, page_html
-from evodesign.report.page.hardware import hardware_content
+from evodesign.report.page.card import hardware_content
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter

@@ -30,7 +30,7 @@ from evodesign.records import (
     Status,
 )
 from evodesign.report.page import page_content, page_html
-from evodesign.report.page.static_torques import StaticTorques
+from evodesign.report.page.card import StaticTorques
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
