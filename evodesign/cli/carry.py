@@ -7,21 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from evodesign.cli import damage
-from evodesign.cli.options import (
-    CORES,
-    CarriedHeights,
-    Damaged,
-    Damping,
-    Design,
-    Frequency,
-    Jobs,
-    Json,
-    Payload,
-    Person,
-    RunPath,
-    Video,
-)
+from evodesign.cli import damage, options
 from evodesign.simulation.installed import draw_without_a_screen, refuse_without_a_controller
 
 if TYPE_CHECKING:
@@ -31,11 +17,11 @@ if TYPE_CHECKING:
 
 
 def carry(
-    run: RunPath,
-    design: Design,
-    height: CarriedHeights = None,
-    person: Person = None,
-    payload: Payload = None,
+    run: options.RunPath,
+    design: options.Design,
+    height: options.CarriedHeights = None,
+    person: options.Person = None,
+    payload: options.Payload = None,
     distance: Annotated[float, typer.Option(metavar="M", help="How far they walk [m].")] = 2.0,
     direction: Annotated[
         float,
@@ -48,12 +34,12 @@ def carry(
         float | None,
         typer.Option(metavar="KG", help="Another mass of the load [kg].", show_default="the problem's"),
     ] = None,
-    frequency: Frequency = 8.0,
-    damping: Damping = 1.0,
-    video: Video = None,
-    jobs: Jobs = CORES,
-    json: Json = False,
-    damaged: Damaged = False,
+    frequency: options.Frequency = 8.0,
+    damping: options.Damping = 1.0,
+    video: options.Video = None,
+    jobs: options.Jobs = options.CORES,
+    json: options.Json = False,
+    damaged: options.Damaged = False,
 ) -> None:
     """Let a design's robot and person walk with the load in MuJoCo, under whole-body controllers."""
     refuse_without_a_controller()

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
-from evodesign.cli.options import CORES, NOTHING_SOLVED, Jobs, Json, Plot, ProblemPath, SymmetryName
+from evodesign.cli import options
 from evodesign.errors import InputError, nearest_name
 from evodesign.files import make_folder
 
@@ -20,19 +20,13 @@ UNSCALED = "unscaled"
 
 
 def evaluate(
-    problem: ProblemPath,
-    design: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="File of named designs.", show_default="the unscaled robot"),
-    ] = None,
-    name: Annotated[
-        str | None,
-        typer.Option(metavar="NAME", help="Which design of the file.", show_default="the file's only one"),
-    ] = None,
-    symmetry: SymmetryName = None,
-    jobs: Jobs = CORES,
-    json: Json = False,
-    plot: Plot = None,
+    problem: options.ProblemPath,
+    design: options.DesignsFile = None,
+    name: options.DesignName = None,
+    symmetry: options.SymmetryName = None,
+    jobs: options.Jobs = options.CORES,
+    json: options.Json = False,
+    plot: options.Plot = None,
 ) -> None:
     """One design in full: reach, postures, torques, wrenches, residuals. Exit code 5: no case is solved."""
     from evodesign.analysis.people_spread import spread_json
@@ -77,7 +71,7 @@ def evaluate(
             console().print(table)
         show_notes(overlaps(solved_distances(result).items()))
     if not any(case.solved for case in result.cases):
-        raise typer.Exit(NOTHING_SOLVED)
+        raise typer.Exit(options.NOTHING_SOLVED)
 
 
 def _spread(built: DesignProblem, values: tuple[float, ...], jobs: int) -> PeopleSpread:

@@ -44,6 +44,20 @@ NewRun = Annotated[
     typer.Option("--run", metavar="DIR", help="Directory of the new run.", show_default="in runs/"),
 ]
 Design = Annotated[int, typer.Argument(metavar="DESIGN", min=0, help="Number of an evaluation of the run.")]
+DesignsFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--design", metavar="FILE", help="File of named designs.", show_default="the unscaled robot"
+    ),
+]
+
+DesignName = Annotated[
+    str | None,
+    typer.Option(
+        "--name", metavar="NAME", help="Which design of the file.", show_default="the file's only one"
+    ),
+]
+
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
 Plot = Annotated[
     Path | None,

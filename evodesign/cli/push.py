@@ -9,21 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from evodesign.cli import damage
-from evodesign.cli.options import (
-    CORES,
-    Damaged,
-    Damping,
-    Design,
-    Engine,
-    Frequency,
-    Jobs,
-    Json,
-    Payload,
-    Person,
-    PushedHeights,
-    RunPath,
-)
+from evodesign.cli import damage, options
 from evodesign.errors import InputError
 from evodesign.simulation.installed import EngineName, draw_without_a_screen, refuse_without_a_controller
 
@@ -34,11 +20,11 @@ if TYPE_CHECKING:
 
 
 def push(
-    run: RunPath,
-    design: Design,
-    height: PushedHeights = None,
-    person: Person = None,
-    payload: Payload = None,
+    run: options.RunPath,
+    design: options.Design,
+    height: options.PushedHeights = None,
+    person: options.Person = None,
+    payload: options.Payload = None,
     direction: Annotated[
         list[float] | None,
         typer.Option(
@@ -51,12 +37,12 @@ def push(
     spread: Annotated[
         bool, typer.Option("--spread", help="Also with other friction, load and late sensors.")
     ] = False,
-    frequency: Frequency = 8.0,
-    damping: Damping = 1.0,
-    engine: Engine = EngineName.MUJOCO,
-    jobs: Jobs = CORES,
-    json: Json = False,
-    damaged: Damaged = False,
+    frequency: options.Frequency = 8.0,
+    damping: options.Damping = 1.0,
+    engine: options.Engine = EngineName.MUJOCO,
+    jobs: options.Jobs = options.CORES,
+    json: options.Json = False,
+    damaged: options.Damaged = False,
 ) -> None:
     """Push a design's robot, under whole-body controllers, to the largest impulses it survives."""
     refuse_without_a_controller(engine)

@@ -48,12 +48,7 @@ def search(
         built,
         directory,
         built.settings(algorithm, population, seed, asynchronous),
-        Budgets(
-            evaluations=evaluations,
-            hours=hours,
-            stagnation_generations=stagnation_generations,
-            least_growth_percent=least_growth_percent,
-        ),
+        Budgets(evaluations, hours, stagnation_generations, least_growth_percent),
         Workers(jobs=jobs, pool=pool, scheduler=scheduler, cache=cache),
         DISPLAY,
         partial(SignalledStop, run=directory),
