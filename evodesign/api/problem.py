@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from evodesign.api.design import Design
 from evodesign.design.parameter import ALLOCATIONS, ParameterKind
-from evodesign.errors import InputError, nearest_name, on_one_line
+from evodesign.errors import InputError, on_one_line
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.factory import cached_precomputed
 from evodesign.evaluation.lifts import Lifts
@@ -25,6 +25,7 @@ from evodesign.problem.designs import beyond_bounds
 from evodesign.problem.notes import notes
 from evodesign.problem.shipped import shipped_problems
 from evodesign.problem.source import read_source, source_of
+from evodesign.problem.unknown_names import refuse_unlisted
 from evodesign.records import (
     Assessed,
     Constraint,
@@ -223,9 +224,7 @@ class Problem:
         names = [parameter.name for parameter in self.parameters]
         if isinstance(design, Mapping):
             for name in design:
-                if name not in names:
-                    found = f"'{name}'{nearest_name(name, names)}"
-                    raise InputError("design", "", f"parameters among {', '.join(names)}", found)
+                refuse_unlisted("design", "", name, names, f"parameters among {', '.join(names)}")
             values = {**self.unscaled, **design}
         elif len(design) == len(names):
             values = dict(zip(names, design, strict=True))

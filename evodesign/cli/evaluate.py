@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from evodesign.cli import options
-from evodesign.errors import InputError, nearest_name
+from evodesign.errors import InputError
 from evodesign.files import make_folder
 
 if TYPE_CHECKING:
@@ -118,6 +118,7 @@ def _named_design(
     """The design of a name in a file; without a file the unscaled robot."""
     from evodesign.problem.designs import read_designs
     from evodesign.problem.named_files import read_text
+    from evodesign.problem.unknown_names import refuse_unlisted
 
     tree = problem.scene.designed_tree
     if file is None:
@@ -127,9 +128,8 @@ def _named_design(
     designs = read_designs(read_text(file, "--design", ""), str(file), problem.space, tree)
     if name is None and len(designs) == 1:
         name = next(iter(designs))
+    wanted = f"one of the designs {', '.join(designs)} of '{file}'"
     if name is None:
-        raise InputError("--name", "", f"one of the designs {', '.join(designs)} of '{file}'", "nothing")
-    if name not in designs:
-        wanted = f"one of the designs {', '.join(designs)} of '{file}'"
-        raise InputError("--name", "", wanted, f"'{name}'{nearest_name(name, designs)}")
+        raise InputError("--name", "", wanted, "nothing")
+    refuse_unlisted("--name", "", name, designs, wanted)
     return name, designs[name]

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import msgspec
 
 from evodesign.design.space import DesignSpace
-from evodesign.errors import InputError, nearest_name
+from evodesign.errors import InputError
 from evodesign.mechanics.scene import Scene, scene_of
 from evodesign.mechanics.stance_case import StanceCase
 from evodesign.nlp.method import MethodName, SolverOptions
@@ -53,6 +53,7 @@ from evodesign.problem.standing_cases import standing_cases
 from evodesign.problem.symmetric import resolved_symmetry
 from evodesign.problem.teams import refuse_what_teams_lack, teams_of
 from evodesign.problem.torque_limits import refuse_unlimited
+from evodesign.problem.unknown_names import refuse_unlisted
 from evodesign.quantities.objectives import SHARED_REACH
 from evodesign.quantities.push_quantities import PushSettings
 from evodesign.records import (
@@ -237,10 +238,8 @@ class DesignProblem:
         given = self.search.reference
         signs = {each.name: -1.0 if each.sense is Sense.MAXIMISE else 1.0 for each in self.objectives}
         for name in given:
-            if name not in signs:
-                found = f"'{name}'{nearest_name(name, signs)}"
-                wanted = f"one of the objectives {', '.join(signs)}"
-                raise InputError(self.source.path, f"search.reference.{name}", wanted, found)
+            wanted = f"one of the objectives {', '.join(signs)}"
+            refuse_unlisted(self.source.path, f"search.reference.{name}", name, signs, wanted)
         if not given:
             return msgspec.UNSET
         return tuple(sign * given[name] if name in given else None for name, sign in signs.items())

@@ -24,7 +24,7 @@ from evodesign.problem.design_space import (
 )
 from evodesign.problem.file import DescriptorTable, ProblemFile
 from evodesign.problem.unanswered_quantities import refuse_unanswered_quantity
-from evodesign.problem.unknown_names import refuse_unknown
+from evodesign.problem.unknown_names import refuse_unknown, refuse_unlisted
 from evodesign.quantities.objectives import OTHERWISE_CALLED, objective_kind, objective_kinds
 from evodesign.quantities.push_quantities import SIMULATED, PushSettings
 from evodesign.records import (
@@ -249,9 +249,8 @@ def search_descriptors(
     for index, table in enumerate(tables):
         key, names = f"search.descriptor[{index}]", table.name.split(SUM)
         for name in names:
-            if name not in known:
-                wanted = f"a sum such as 'a{SUM}b' of {', '.join(known)}"
-                raise InputError(source, f"{key}.name", wanted, f"'{name}'{nearest_name(name, known)}")
+            wanted = f"a sum such as 'a{SUM}b' of {', '.join(known)}"
+            refuse_unlisted(source, f"{key}.name", name, known, wanted)
         if table.name in [each.name for each in found]:
             raise InputError(source, f"{key}.name", "every descriptor once", f"'{table.name}' twice")
         lower, upper = table.lower, table.upper
