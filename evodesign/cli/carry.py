@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from evodesign.cli import damage, options
+from evodesign.cli import options
 from evodesign.simulation.installed import draw_without_a_screen, refuse_without_a_controller
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def carry(
             for name, agent in case.outcome.agents.items()
             if agent.saturated
         )
-    damage.end(logged, accepted=damaged)
+    options.end_damaged(logged, accepted=damaged)
 
 
 def _middle(holds: Sequence[CaseDetail]) -> list[CaseDetail]:

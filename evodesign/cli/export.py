@@ -7,8 +7,7 @@ from typing import Annotated
 
 import typer
 
-from evodesign.cli import damage
-from evodesign.cli.options import CORES, Damaged, Design, Jobs, RunPath
+from evodesign.cli.options import CORES, Damaged, Design, Jobs, RunPath, end_damaged
 
 
 def export(
@@ -38,4 +37,4 @@ def export(
         done = export_logged(logged, design, to, jobs, progress, cad=cad)
     show_notes(f"no {name}: {reason}" for name, reason in done.left_out.items())
     print_lines(*map(str, done.files))
-    damage.end(logged, accepted=damaged)
+    end_damaged(logged, accepted=damaged)

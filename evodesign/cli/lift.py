@@ -33,7 +33,7 @@ def lift(
     """
     from evodesign.cli.output import console, print_json, show_notes, write_text
     from evodesign.cli.progress import precompute_progress
-    from evodesign.cli.tables.lift import lift_tables
+    from evodesign.cli.tables.simulation import lift_tables
     from evodesign.evaluation.factory import evaluator_of
     from evodesign.evaluation.lift_json import lift_csv, lift_json
     from evodesign.evaluation.lifts import Lifts

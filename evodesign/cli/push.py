@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from evodesign.cli import damage, options
+from evodesign.cli import options
 from evodesign.errors import InputError
 from evodesign.simulation.installed import EngineName, draw_without_a_screen, refuse_without_a_controller
 
@@ -71,7 +71,7 @@ def push(
     else:
         title = f"{logged.header.problem_name}: pushes that design {design} survives in {engine.label}"
         console().print(margins_table(title, found))
-    damage.end(logged, accepted=damaged)
+    options.end_damaged(logged, accepted=damaged)
 
 
 def push_once(

@@ -6,8 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, TypeVar
 
-from evodesign.cli import damage
-from evodesign.cli.options import CORES, Damaged, Design, Jobs, Json, Plot, RunPath
+from evodesign.cli.options import CORES, Damaged, Design, Jobs, Json, Plot, RunPath, end_damaged
 from evodesign.errors import InputError
 from evodesign.files import make_folder
 
@@ -67,7 +66,7 @@ def show(
 
         console().print(card(opened, ergonomics() or (), bill() or {}))
         show_notes([*overlaps((distances() or {}).items()), *_assumed(opened)])
-    damage.end(logged, accepted=damaged)
+    end_damaged(logged, accepted=damaged)
 
 
 def _part(ask: Callable[[], T], what: str) -> T | None:

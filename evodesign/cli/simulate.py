@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from evodesign.cli import damage, options
+from evodesign.cli import options
 from evodesign.errors import InputError
 from evodesign.simulation.installed import EngineName, draw_without_a_screen, refuse_without_mujoco
 
@@ -119,7 +119,7 @@ def simulate(
             for name, agent in each.outcome.agents.items()
             if agent.at_limit
         )
-    damage.end(logged, accepted=damaged)
+    options.end_damaged(logged, accepted=damaged)
 
 
 def _write_recording(path: Path, opened: OpenedDesign, simulations: Sequence[SimulatedCase]) -> None:

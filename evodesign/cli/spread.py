@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from evodesign.cli import damage, options
+from evodesign.cli import options
 
 
 def spread(
@@ -58,4 +58,4 @@ def spread(
     else:
         console().print(spread_table(found, logged.header.objectives, logged.header.constrained))
         print_lines(spread_sentence(found))
-    damage.end(logged, accepted=damaged)
+    options.end_damaged(logged, accepted=damaged)

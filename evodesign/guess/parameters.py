@@ -166,7 +166,7 @@ def load_guess(plan: BodyPlan, ground: float) -> LoadGuess:
     shoulders = _beginnings(arms)
     hips = plan.legs["left"].bodies[0].origin[2] - ground
     top = shoulders[0][2] - ground
-    arm = _way([body.origin for body in arms["left"].bodies])
+    arm = sum(math.dist(a.origin, b.origin) for a, b in itertools.pairwise(arms["left"].bodies))
     width = min(max(_rounded(1.4 * math.dist(*shoulders), 0.05), 0.2), 0.6)
     depth = 0.4 if arm > 0.5 else 0.25
     mass = sum(float(body.inertia.mass) for body in plan.welded.bodies.values())
@@ -179,10 +179,6 @@ def _beginnings(limbs: Mapping[str, Limb]) -> tuple[Vector, Vector]:
     pairs = [*zip(*(limbs[side].points for side in SIDES), strict=False)]
     apart = BESIDE * min(limb.length for limb in limbs.values())
     return next((pair for pair in pairs if math.dist(*pair) > apart), pairs[-1])
-
-
-def _way(points: Sequence[Vector]) -> float:
-    return sum(math.dist(one, other) for one, other in itertools.pairwise(points))
 
 
 def _rounded(value: float, step: float) -> float:

@@ -124,7 +124,10 @@ def compare(
 def _compared(
     case: MeasuredCase, person: PosedPerson, holders: Mapping[HumanPosture, Holder]
 ) -> ComparedCase:
-    pairs = [(_posture(person, frame), frame) for frame in case.frames]
+    pairs = [
+        (person.from_places(each.places) if each.places else person.from_angles(each.features), each)
+        for each in case.frames
+    ]
     ours = _mean([person.posed(posture, frame.hand_force) for posture, frame in pairs])
     palms = fmean(palms_of(person, frame) for frame in case.frames)
     force = fmean(frame.hand_force for frame in case.frames)
@@ -136,10 +139,6 @@ def _compared(
         kind: None if posture is None else person.posed(posture, force) for kind, posture in holds.items()
     }
     return ComparedCase(case, palms, force, moments, ours if case.has_legs else ours.above_legs(), predicted)
-
-
-def _posture(person: PosedPerson, frame: Frame) -> AgentPosture:
-    return person.from_places(frame.places) if frame.places else person.from_angles(frame.features)
 
 
 def palms_of(person: PosedPerson, frame: Frame) -> float:

@@ -10,10 +10,8 @@ from rich.text import Text
 
 from evodesign.analysis.people_spread import PeopleSpread
 from evodesign.cli.output import heading, interval
-from evodesign.cli.tables.bill import actuators_table
 from evodesign.cli.tables.cases import case_tables
-from evodesign.cli.tables.constraints import constraints_table, violation_heading
-from evodesign.cli.tables.limits import limits_table
+from evodesign.cli.tables.design import actuators_table, constraints_table, limits_table, violation_heading
 from evodesign.cli.tables.people import effort_table, people_table
 from evodesign.cli.tables.spread import quantities_table
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled

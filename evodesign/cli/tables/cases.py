@@ -43,8 +43,8 @@ def cases_table(assessment: Assessment, title: str) -> FittedTable:
             _height(outcome) if labels or moves else outcome.case.task.heights[0],
             *(_undisturbed(outcome, role) for role in roles),
             *iterations,
-            _residual(outcome),
-            _status(outcome),
+            "-" if outcome.residual is None else f"{outcome.residual:.1e}",
+            outcome.status if outcome.status is Status.SOLVED else f"{outcome.status}: {outcome.reason}",
         )
         for name, norms in outcome.disturbed.items():
             own = [norms.get(role) for role in roles]
@@ -53,14 +53,6 @@ def cases_table(assessment: Assessment, title: str) -> FittedTable:
         if following is not None and outcome.case.pair != following.case.pair:
             table.add_section()
     return table
-
-
-def _residual(outcome: CaseOutcome) -> str:
-    return "-" if outcome.residual is None else f"{outcome.residual:.1e}"
-
-
-def _status(outcome: CaseOutcome) -> str:
-    return outcome.status if outcome.status == "solved" else f"{outcome.status}: {outcome.reason}"
 
 
 def summary_table(assessment: Assessment) -> FittedTable:
@@ -123,16 +115,11 @@ def _mean_and_worst(norms: Sequence[float]) -> Iterator[float | None]:
 
 def _name_columns(outcomes: Sequence[CaseOutcome]) -> dict[str, Callable[[CaseOutcome], str]]:
     """Columns of names that tell cases apart, with what stands in them."""
-    columns = {"person": _human, "load": _payload}
+    columns: dict[str, Callable[[CaseOutcome], str]] = {
+        "person": lambda outcome: outcome.case.person,
+        "load": lambda outcome: outcome.case.payload,
+    }
     return {column: name for column, name in columns.items() if any(map(name, outcomes))}
-
-
-def _human(outcome: CaseOutcome) -> str:
-    return outcome.case.person
-
-
-def _payload(outcome: CaseOutcome) -> str:
-    return outcome.case.payload
 
 
 def _height(outcome: CaseOutcome) -> str:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from evodesign.cli.output import heading
-from evodesign.cli.tables.constraints import constraints_table
+from evodesign.cli.tables.design import constraints_table
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.evaluation.polish import Aim, Polished
 from evodesign.problem.build import DesignProblem

@@ -6,7 +6,7 @@ import io
 
 from rich.console import Console
 
-from evodesign.cli.tables.limits import limits_table
+from evodesign.cli.tables.design import limits_table
 from evodesign.records import ActiveLimit, Case, CaseDetail, Hold, InstantDetail
 
 INSTANT = (InstantDetail(time_s=0.0, agents={}),)
