@@ -115,7 +115,7 @@ def place(repository: Path, tmp_path: Path, run_with_people: Path, monkeypatch: 
     header = toy_header(budget=60)
     with RunWriter(tmp_path / "many", header) as log:
         for evaluation in toy_evaluations(header, 60):
-            log.evaluation(evaluation)
+            log.write(evaluation)
     for folder in ("populations", "problems"):
         Path(folder).symlink_to(repository / folder)
     text = (GOLDEN / "lifting" / "problem.toml").read_text(encoding="utf-8")

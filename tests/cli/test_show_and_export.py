@@ -49,8 +49,8 @@ def write_run(
         known = {detail.evaluation: detail for detail in details}
         for evaluation in evaluations:
             if evaluation.number in known:
-                log.detail(known[evaluation.number])
-            log.evaluation(evaluation)
+                log.write(known[evaluation.number])
+            log.write(evaluation)
     return place
 
 

@@ -46,7 +46,7 @@ def run(hardware: DesignProblem, tmp_path_factory: pytest.TempPathFactory) -> Ru
     assessed = evaluator.assess(genome)
     assert assessed.cases, assessed.assessment.reason
     with RunWriter(directory, header_of(hardware, hardware.settings("nsga2", 1, 1), 1)) as log:
-        log.evaluation(
+        log.write(
             Evaluation(
                 number=0,
                 generation=0,
@@ -56,7 +56,7 @@ def run(hardware: DesignProblem, tmp_path_factory: pytest.TempPathFactory) -> Ru
                 worker="here",
             )
         )
-        log.detail(Detail(evaluation=0, cases=assessed.cases))
+        log.write(Detail(evaluation=0, cases=assessed.cases))
     return read_run(directory)
 
 

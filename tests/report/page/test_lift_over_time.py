@@ -84,8 +84,8 @@ def run(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> RunLog:
             ),
         )
         genome = problem.space.genome(values)
-        log.detail(Detail(evaluation=0, cases=(detail,)))
-        log.evaluation(Evaluation(0, 0, genome, assessment, seconds=0.1, worker="here"))
+        log.write(Detail(evaluation=0, cases=(detail,)))
+        log.write(Evaluation(0, 0, genome, assessment, seconds=0.1, worker="here"))
     return read_run(place)
 
 
