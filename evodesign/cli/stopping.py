@@ -32,6 +32,8 @@ class SignalledStop:
         hours: wall time of the session from now on; None for no end.
         run: directory of the run.
         grace_seconds: how long what is in flight may take.
+    Attributes:
+        why: what used up the session, as a clause; empty when a person stopped it.
     """
 
     def __init__(self, hours: float | None, run: Path, grace_seconds: float = GRACE_SECONDS) -> None:
@@ -42,18 +44,13 @@ class SignalledStop:
         self._end = None if hours is None else time.monotonic() + hours * SECONDS_PER_HOUR
         self._asked = threading.Event()
         self._heeded = False
-        self._why = ""
+        self.why = ""
         signal.signal(signal.SIGTERM, self._on_request)
         signal.signal(signal.SIGINT, self._on_request)
 
     def __call__(self) -> bool:
         """Whether no further evaluation is to begin."""
         return self._asked.is_set() or INTERRUPTS.unwinding
-
-    @property
-    def why(self) -> str:
-        """What used up the session, as a clause; empty when a person stopped it."""
-        return self._why
 
     @contextmanager
     def heeded(self) -> Iterator[None]:
@@ -78,8 +75,8 @@ class SignalledStop:
     def _on_alarm(self, signum: int, frame: FrameType | None) -> None:
         if self._asked.is_set():
             INTERRUPTS.interrupt()
-        self._why = f"its wall time of {self._hours:g} h is over"
-        self._begin(self._why)
+        self.why = f"its wall time of {self._hours:g} h is over"
+        self._begin(self.why)
 
     def _begin(self, remark: str) -> None:
         self._asked.set()

@@ -19,19 +19,11 @@ from evodesign.pool.base import Limits
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.codesign import JointSettings
 from evodesign.posture.postures import Symmetry
-from evodesign.problem.agents import (
-    human_agents,
-    robot_agents,
-)
+from evodesign.problem.agents import human_agents, robot_agents
 from evodesign.problem.collisions import with_collisions
 from evodesign.problem.constraints import constraints_of, refuse_constraints, with_what_can_be_built
 from evodesign.problem.design_geometry import joint_ranges_of
-from evodesign.problem.design_space import (
-    check_allocations,
-    effort_weights,
-    refuse_choices,
-    robot_share,
-)
+from evodesign.problem.design_space import check_allocations, effort_weights, refuse_choices, robot_share
 from evodesign.problem.designs import read_designs, start_genomes, unscaled_genome
 from evodesign.problem.file import ProblemFile, SearchTable
 from evodesign.problem.from_tables import (

@@ -14,10 +14,7 @@ from msgspec import Meta
 from evodesign.hardware.catalogue import CatalogueRow
 from evodesign.nlp.method import MethodName
 from evodesign.posture.postures import Symmetry
-from evodesign.problem.agent_tables import (
-    HumanTable,
-    RobotTable,
-)
+from evodesign.problem.agent_tables import HumanTable, RobotTable
 from evodesign.problem.design_table import DesignTable, DutyTable, HardwareTable, LoadCaseTable, MaterialTable
 from evodesign.problem.table import Name, NotNegative, Positive, Table
 from evodesign.problem.task_tables import (

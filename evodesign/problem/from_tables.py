@@ -14,30 +14,14 @@ from evodesign.mechanics.contact import Ground
 from evodesign.mechanics.scene import Scene
 from evodesign.pool.base import Limits
 from evodesign.problem.design_geometry import joint_parameters, section_parameters
-from evodesign.problem.design_hardware import (
-    actuator_parameters,
-    wall_parameters,
-    walls_of,
-)
-from evodesign.problem.design_space import (
-    density_parameters,
-)
+from evodesign.problem.design_hardware import actuator_parameters, wall_parameters, walls_of
+from evodesign.problem.design_space import density_parameters
 from evodesign.problem.file import DescriptorTable, ProblemFile
 from evodesign.problem.unanswered_quantities import refuse_unanswered_quantity
 from evodesign.problem.unknown_names import refuse_unknown, refuse_unlisted
 from evodesign.quantities.objectives import OTHERWISE_CALLED, objective_kind, objective_kinds
 from evodesign.quantities.push_quantities import SIMULATED, PushSettings
-from evodesign.records import (
-    SUM,
-    Constraint,
-    Descriptor,
-    Hold,
-    Lift,
-    Objective,
-    ProblemSource,
-    Sense,
-    Task,
-)
+from evodesign.records import SUM, Constraint, Descriptor, Hold, Lift, Objective, ProblemSource, Sense, Task
 from evodesign.simulation.pushable import refuse_unpushable
 from evodesign.tree.model import Tree
 

@@ -59,10 +59,8 @@ def height_table(
 
 def claims_table(claims: Iterable[Claim]) -> FittedTable:
     """Every claim with its verdict."""
-    table = titled("Claims", names("claim", "by", "paper", "here", "verdict"))
-    for claim in claims:
-        table.add_row(claim.subject, claim.by, claim.paper, claim.found, _verdict(claim))
-    return table
+    rows = ((each.subject, each.by, each.paper, each.found, _verdict(each)) for each in claims)
+    return titled("Claims", names("claim", "by", "paper", "here", "verdict"), rows)
 
 
 def verdict_lines(claims: Iterable[Claim]) -> list[str]:
@@ -153,10 +151,11 @@ def robots_of_2025(done: ErgonomicReproduction) -> FittedTable:
         *numbers("reach [m]", "cost [(N m)^2]"),
         *numbers(*(name.split(".")[1] for name in lengths)),
     ]
-    table = titled("Robots of 2025 and of our searches: reach, cost and length multipliers", columns)
-    for name, robot in done.robots.items():
-        table.add_row(name, robot.highest, robot.cost, *(done.designs[name][each] for each in lengths))
-    return table
+    rows = (
+        (name, robot.highest, robot.cost, *(done.designs[name][each] for each in lengths))
+        for name, robot in done.robots.items()
+    )
+    return titled("Robots of 2025 and of our searches: reach, cost and length multipliers", columns, rows)
 
 
 def ergonomic_lines(done: ErgonomicReproduction, directory: Path, seconds: float) -> list[str]:

@@ -75,17 +75,16 @@ def margins_table(title: str, found: FoundMargins) -> FittedTable:
 def pushes_table(title: str, outcomes: Mapping[str, PushOutcome]) -> FittedTable:
     """What came of one push at each moment."""
     columns = numbers("recovery [s]", "load off [mm]", "capture point off [mm]", "torque saturation [%]")
-    table = titled(title, [*names("moment"), *columns, *names("lost")], keys=1)
-    for moment, each in outcomes.items():
-        table.add_row(
+    rows = (
+        (
             moment,
             "-" if each.recovery is None else f"{each.recovery:.2f}",
-            f"{1e3 * each.load_off:.1f}",
-            f"{1e3 * each.capture:.1f}",
-            f"{100.0 * each.saturation:.0f}",
+            *(f"{1e3 * each.load_off:.1f}", f"{1e3 * each.capture:.1f}", f"{100.0 * each.saturation:.0f}"),
             each.reason or "no",
         )
-    return table
+        for moment, each in outcomes.items()
+    )
+    return titled(title, [*names("moment"), *columns, *names("lost")], rows)
 
 
 def carries_table(title: str, cases: Sequence[CarriedCase]) -> FittedTable:

@@ -107,12 +107,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
         bodies=None if problem is None else bodies(problem),
         words={} if problem is None else _words(problem),
         urdf="" if problem is None else urdf_text(problem.scene.designed_tree),
-        designs=_with_slices(
-            _designs(run, problem, shown, opened, marked, on_front),
-            run,
-            found,
-            {mark.number for mark in marked},
-        ),
+        designs=_designs(run, problem, found, shown, opened, marked, on_front),
         notes=(
             *run.notes,
             *notes,
@@ -218,14 +213,15 @@ def _thinned_note(run: RunLog, shown: Sequence[Evaluation]) -> tuple[str, ...]:
 def _designs(
     run: RunLog,
     problem: DesignProblem | None,
+    found: Importance,
     shown: Sequence[Evaluation],
     opened: dict[int, Detail],
     marked: Sequence[Mark],
     on_front: Collection[int],
 ) -> dict[int, DesignContent]:
-    wanted = {*on_front, *(mark.number for mark in marked)}
-    known = None if problem is None else _Known.of(problem, run)
+    """The front and the marked designs, these with slices through them."""
     recorded = {mark.number for mark in marked}
+    known = None if problem is None else _Known.of(problem, run)
     header = run.header
     quantities = [*(each.name for each in header.objectives), *(each.name for each in header.constrained)]
     return {
@@ -233,22 +229,12 @@ def _designs(
             _design(known, evaluation, opened.get(evaluation.number), recorded),
             people=over_people(quantities, evaluation.assessment.cases),
             weakest=evaluation.assessment.weakest_pushes,
+            slices=to_builtins(slices(found, header.parameters, evaluation))
+            if evaluation.number in recorded
+            else [],
         )
         for evaluation in shown
-        if evaluation.number in wanted
-    }
-
-
-def _with_slices(
-    designs: dict[int, DesignContent], run: RunLog, found: Importance, marked: Collection[int]
-) -> dict[int, DesignContent]:
-    """The designs, those that are marked with slices through them."""
-    through = {each.number: each for each in run.evaluations if each.number in marked}
-    return {
-        number: replace(each, slices=to_builtins(slices(found, run.header.parameters, through[number])))
-        if number in through
-        else each
-        for number, each in designs.items()
+        if evaluation.number in recorded or evaluation.number in on_front
     }
 
 
