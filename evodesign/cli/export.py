@@ -24,8 +24,7 @@ def export(
     """One design of a run as files: URDF, MJCF, postures, and a replay for Foxglove and Lichtblick."""
     from evodesign.cli.output import print_lines, show_notes
     from evodesign.cli.progress import precompute_progress
-    from evodesign.report.cad.installed import refuse_without_cad
-    from evodesign.report.export.folder import export_logged, refuse_full
+    from evodesign.report.export.folder import export_logged, refuse_full, refuse_without_cad
     from evodesign.runlog.run import read_run
 
     refuse_full(to)  # before anything takes time

@@ -85,18 +85,12 @@ def _segment(welded: WeldedTree, limbs: Mapping[str, Limb], name: str, *, beyond
             return Group(name, (), 0.0, f"no segment of at least {SHORTEST * 100:g} cm")
         body, after = limb.bodies[longest], limb.bodies[longest + 1 :]
         joint = after[0].joint if after else None
-        link = _link_of(
-            welded, body, _heaviest(welded, body) if joint is None else joint.parent, ends[longest]
-        )
+        link = _link_of(welded, body, welded.heaviest(body) if joint is None else joint.parent, ends[longest])
         if link is None:
             return Group(name, (), 0.0, f"no link of '{body.name}' grows towards the next joint")
         links.append(link)
         lengths.append(spans[longest])
     return Group(name, tuple(links), sum(lengths) / len(lengths))
-
-
-def _heaviest(welded: WeldedTree, body: WeldedBody) -> str:
-    return max(body.links, key=lambda name: float(welded.tree.link_by_name[name].inertia.mass))
 
 
 def _link_of(welded: WeldedTree, body: WeldedBody, last: str, end: Vector) -> str | None:

@@ -135,11 +135,7 @@ def _inline(names: dict[str, str]) -> str:
 
 def _trunk_frames(plan: BodyPlan) -> list[str]:
     """The links with mass that hips and shoulders are joined to."""
-    ends = (plan.trunk[0], plan.trunk[-1])
-    links = plan.welded.tree.link_by_name
-    return [
-        *dict.fromkeys(max(body.links, key=lambda name: float(links[name].inertia.mass)) for body in ends)
-    ]
+    return [*dict.fromkeys(map(plan.welded.heaviest, (plan.trunk[0], plan.trunk[-1])))]
 
 
 def _frame(contact: GuessedContact) -> Sequence[str]:

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.body.inertia import total
-from evodesign.body.placement import Placement
+from evodesign.body.placement import Placement, vector
 from evodesign.body.shape import Solid
 from evodesign.errors import ModelError, listed
 from evodesign.tree.mirror_candidates import Unpaired
@@ -31,7 +31,7 @@ from evodesign.tree.mirror_images import ANGLE, MIRROR, Difference, Figure, Seen
 from evodesign.tree.mirror_light import half, paired
 from evodesign.tree.mirror_pairs import Pairs
 from evodesign.tree.model import Joint, JointKind, Link, Look, Tree
-from evodesign.tree.solid_pairs import matrix, mean_rotation, mean_solids, turned_by, vector
+from evodesign.tree.solid_pairs import matrix, mean_rotation, mean_solids, turned_by
 
 Array = NDArray[np.float64]
 

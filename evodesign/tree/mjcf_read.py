@@ -30,12 +30,12 @@ import numpy as np
 from lxml import etree
 
 from evodesign.body.inertia import Inertia
-from evodesign.body.placement import Placement, scale
+from evodesign.body.placement import Placement, scale, vector
 from evodesign.errors import ModelError, listed
 from evodesign.tree.frames import parent_from_child
 from evodesign.tree.mjcf_effort import effort_limit
 from evodesign.tree.mjcf_followers import FollowerRule, follower_rules
-from evodesign.tree.mjcf_geoms import add_geoms, placement, vector
+from evodesign.tree.mjcf_geoms import add_geoms, placement
 from evodesign.tree.mjcf_unread import Unread
 from evodesign.tree.model import Joint, JointKind
 from evodesign.tree.placeholder import placeholder

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from evodesign.body.placement import Placement, Vector
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
-from evodesign.tree.mesh_write import triangles_of, vertices_of
+from evodesign.tree.mesh_write import in_frame, triangles_of, vertices_of
 from evodesign.tree.model import Mesh
 
 Array = NDArray[np.float64]
@@ -35,11 +35,9 @@ class Face:
 
 def faces_of(shape: Shape, world_from_shape: Placement) -> list[Face]:
     """The faces of a shape of numbers, round ones as polyhedra."""
-    rotation: Array = np.array(world_from_shape.rotation)
-    origin: Array = np.array(world_from_shape.translation)
     faces = []
     for corners in _outlines(shape):
-        placed = corners @ rotation.T + origin
+        placed = in_frame(corners, world_from_shape)
         normal = _normal(placed)
         if normal is not None:
             faces.append(Face(placed, normal))
@@ -93,13 +91,6 @@ def _normal(corners: Array) -> Array | None:
     return None if size < 1e-12 else area / size
 
 
-def in_world(mesh: Mesh, world_from_link: Placement) -> Array:
-    """Vertices of a mesh in the world [m], shape (n, 3)."""
-    rotation: Array = np.array(world_from_link.rotation, float)
-    found: Array = vertices_of(mesh) @ rotation.T + np.array(world_from_link.translation, float)
-    return found
-
-
 def seen_triangles(mesh: Mesh, world_from_link: Placement, towards: Array) -> tuple[Array, Array]:
     """Corners [m], shape (m, 3, 3), and unit normals, shape (m, 3), of the triangles that face a camera.
 
@@ -111,7 +102,7 @@ def seen_triangles(mesh: Mesh, world_from_link: Placement, towards: Array) -> tu
         world_from_link: of the link that it shows.
         towards: unit vector to the camera, in the world.
     """
-    corners = in_world(mesh, world_from_link)[triangles_of(mesh)]
+    corners = in_frame(vertices_of(mesh), world_from_link)[triangles_of(mesh)]
     areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     facing = areas @ towards
     if not mesh.encloses:
