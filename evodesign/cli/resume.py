@@ -27,8 +27,7 @@ def resume(
 ) -> None:
     """Go on with a run that was stopped or killed, or give a finished one a larger budget."""
     from evodesign.api.sessions import Budgets, Workers, proceed
-    from evodesign.cli.session import DISPLAY, show_result
-    from evodesign.cli.stopping import SignalledStop
+    from evodesign.cli.session import DISPLAY, SignalledStop, show_result
 
     done = proceed(
         run,

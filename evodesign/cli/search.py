@@ -37,8 +37,7 @@ def search(
 ) -> None:
     """Search a problem's designs; every evaluation is logged, and the search can be stopped and resumed."""
     from evodesign.api.sessions import Budgets, Workers, begin, new_directory
-    from evodesign.cli.session import DISPLAY, show_result
-    from evodesign.cli.stopping import SignalledStop
+    from evodesign.cli.session import DISPLAY, SignalledStop, show_result
     from evodesign.problem.build import build_problem
     from evodesign.problem.source import read_source
 

@@ -41,8 +41,7 @@ def spread(
     from evodesign.api.sessions import Workers
     from evodesign.api.spread import spread_over_people
     from evodesign.cli.output import console, print_json, print_lines, show_notes
-    from evodesign.cli.session import DISPLAY
-    from evodesign.cli.stopping import SignalledStop
+    from evodesign.cli.session import DISPLAY, SignalledStop
     from evodesign.cli.tables.spread import spread_table
     from evodesign.runlog.run import read_run
 
