@@ -77,7 +77,8 @@ class WholePostures:
 
     def best(self, task: Task, starts: Sequence[Instants]) -> Candidate:
         """The posture of least cost that known ones lead to."""
-        trials = [self._formulation.polish(self._design, task, start, self._checker) for start in starts]
+        begun = [[self._formulation.start_at(start)] for start in starts]
+        trials = [self._formulation.solve(self._design, task, each, self._checker) for each in begun]
         return min((trial.best for trial in trials if trial.best), key=lambda each: each.attempt.cost)
 
     def residual(self, task: Task, instants: Instants) -> float:

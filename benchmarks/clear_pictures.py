@@ -26,9 +26,9 @@ from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source
 from evodesign.quantities.design_result import DesignResult
+from evodesign.report.figures.design import alone
 from evodesign.report.figures.paint import write_figure
 from evodesign.report.figures.posture_figure import Camera, posture_figure
-from evodesign.report.figures.posture_views import alone
 from evodesign.report.scene_models import PlacedScene, SceneModels, placed_scene
 from evodesign.report.subset import subsample
 from evodesign.runlog.run import read_run

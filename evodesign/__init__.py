@@ -18,12 +18,11 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     __version__: str
     from evodesign.api.design import Design
-    from evodesign.api.lift import lift
     from evodesign.api.problem import Problem, open_problem, problems
     from evodesign.api.pymoo_problem import as_pymoo_problem
     from evodesign.api.run import Run, open_run
     from evodesign.api.search import resume, search
-    from evodesign.api.simulate import simulate
+    from evodesign.api.simulate import lift, simulate
     from evodesign.api.spread import spread
 
 HOMES = {
@@ -31,7 +30,7 @@ HOMES = {
     "Problem": "evodesign.api.problem",
     "Run": "evodesign.api.run",
     "as_pymoo_problem": "evodesign.api.pymoo_problem",
-    "lift": "evodesign.api.lift",
+    "lift": "evodesign.api.simulate",
     "open_problem": "evodesign.api.problem",
     "open_run": "evodesign.api.run",
     "problems": "evodesign.api.problem",

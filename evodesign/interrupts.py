@@ -1,7 +1,7 @@
 """What Ctrl-C does to a command, from its first instruction to its last.
 
     while modules load          it ends at once, with exit code 130: nothing has begun
-    while the command works     KeyboardInterrupt; a search may hold it off (`cli.stopping`)
+    while the command works     KeyboardInterrupt; a search may hold it off (`cli.session`)
     while a module of it loads  the same, once the module has loaded: libraries in C++ abort otherwise
     while it unwinds, or ends   it ends at once
 

@@ -137,7 +137,7 @@ def test_a_kill_that_loses_what_was_in_flight_asks_for_those_turns_again(tmp_pat
 def forged(directory: Path, header: RunHeader, evaluations: Iterable[Evaluation]) -> Path:
     with RunWriter(directory, header) as log:
         for evaluation in evaluations:
-            log.evaluation(evaluation)
+            log.write(evaluation)
     return directory
 
 

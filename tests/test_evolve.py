@@ -243,7 +243,7 @@ def test_a_partly_logged_generation_is_completed_and_nothing_is_evaluated_twice(
     whole = begin(tmp_path / "whole", header)
     with RunWriter(tmp_path / "run", header) as log:
         for evaluation in whole.evaluations[:7]:
-            log.evaluation(evaluation)
+            log.write(evaluation)
     task = ToyTask(header)
     run = go_on(tmp_path / "run", factory_of=lambda header: task)
     assert task.genomes == [evaluation.genome for evaluation in whole.evaluations[7:]]
@@ -255,7 +255,7 @@ def test_a_hole_in_the_log_is_filled(tmp_path: Path) -> None:
     whole = begin(tmp_path / "whole", header)
     with RunWriter(tmp_path / "run", header) as log:
         for evaluation in (*whole.evaluations[:3], *whole.evaluations[4:9]):
-            log.evaluation(evaluation)
+            log.write(evaluation)
     task = ToyTask(header)
     run = go_on(tmp_path / "run", factory_of=lambda header: task)
     assert task.genomes == [whole.evaluations[number].genome for number in (3, *range(9, 15))]
@@ -268,9 +268,9 @@ def test_records_missing_after_the_last_evaluation_are_written(tmp_path: Path, c
     whole = begin(tmp_path / "whole", header)
     with RunWriter(tmp_path / "run", header) as log:
         for evaluation in whole.evaluations:
-            log.evaluation(evaluation)
+            log.write(evaluation)
         if concluded:  # and killed before the front
-            log.generation(whole.generations[0])
+            log.write(whole.generations[0])
     assert essence(go_on(tmp_path / "run")) == essence(whole)
 
 
@@ -278,7 +278,7 @@ def test_a_log_of_another_seed_does_not_fit_the_search(tmp_path: Path) -> None:
     run = begin(tmp_path / "run", toy_header(seed=1))
     with RunWriter(tmp_path / "forged", toy_header(seed=2)) as log:
         for evaluation in run.evaluations:
-            log.evaluation(evaluation)
+            log.write(evaluation)
     before = (tmp_path / "forged/000.mcap").read_bytes()
     with pytest.raises(ResumeMismatch, match="forged: evaluation 0 is of another genome"):
         go_on(tmp_path / "forged", 24)
@@ -294,7 +294,7 @@ def test_one_changed_outcome_in_the_log_is_noticed_in_the_next_generation(tmp_pa
             if evaluation.number == 5:
                 changed = msgspec.structs.replace(evaluation.assessment, violation=0.125)
                 evaluation = msgspec.structs.replace(evaluation, assessment=changed)
-            log.evaluation(evaluation)
+            log.write(evaluation)
     with pytest.raises(ResumeMismatch, match="evaluation 8 "):
         go_on(tmp_path / "forged")
 

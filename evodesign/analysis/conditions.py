@@ -26,7 +26,17 @@ from functools import partial
 from operator import attrgetter
 
 from evodesign.errors import InputError, offered
-from evodesign.records import SUM, Case, CaseOutcome, Evaluation, RunHeader, Task
+from evodesign.records import (
+    SUM,
+    Case,
+    CaseOutcome,
+    Constraint,
+    Evaluation,
+    Objective,
+    Parameter,
+    RunHeader,
+    Task,
+)
 
 Quantity = Callable[[Evaluation], float | None]
 """A number of an evaluation; None where it does not exist."""
@@ -58,7 +68,9 @@ def quantities(header: RunHeader, example: Evaluation | None) -> dict[str, Quant
         example: any evaluation of the run, for its cases; None for a run that has none yet.
     """
     cases = () if example is None else tuple(outcome.case for outcome in example.assessment.cases)
-    found: dict[str, Quantity] = {"lowest_reach": _lowest_reach, "highest_reach": _highest_reach}
+    found: dict[str, Quantity] = {
+        f"{end}_reach": partial(_reach, f"{end}_m") for end in ("lowest", "highest")
+    }
     for case in cases:
         for name, norm in NORMS.items():
             found[f"{name}@{case.task.name}"] = partial(_largest, norm, case.task)
@@ -66,12 +78,13 @@ def quantities(header: RunHeader, example: Evaluation | None) -> dict[str, Quant
         place = "@".join(part for part in (*case.pair, f"{case.task.name}") if part)
         for name, norm in NORMS.items():
             found[f"{name}@{place}"] = partial(_of_case, norm, case)
-    for parameter in header.parameters:
-        found[parameter.name] = partial(_parameter, parameter.name)
-    for constraint in header.constrained:
-        found[constraint.name] = partial(_constrained, constraint.name)
-    for objective in header.objectives:
-        found[objective.name] = partial(_objective, objective.name)
+    parts: Mapping[str, Sequence[Parameter | Constraint | Objective]] = {
+        "design": header.parameters,
+        "constrained": header.constrained,
+        "objectives": header.objectives,
+    }
+    for part, named in parts.items():
+        found |= {each.name: partial(_named, part, each.name) for each in named}
     return found
 
 
@@ -105,26 +118,14 @@ def quantity(known: Mapping[str, Quantity], name: str, source: str) -> Quantity:
     return known[name]
 
 
-def _objective(name: str, evaluation: Evaluation) -> float | None:
-    return evaluation.assessment.objectives.get(name)
+def _named(part: str, name: str, evaluation: Evaluation) -> float | None:
+    values: Mapping[str, float] = getattr(evaluation.assessment, part)
+    return values.get(name)
 
 
-def _constrained(name: str, evaluation: Evaluation) -> float | None:
-    return evaluation.assessment.constrained.get(name)
-
-
-def _parameter(name: str, evaluation: Evaluation) -> float | None:
-    return evaluation.assessment.design.get(name)
-
-
-def _lowest_reach(evaluation: Evaluation) -> float | None:
-    reach = evaluation.assessment.reach
-    return None if reach is None else reach.lowest_m
-
-
-def _highest_reach(evaluation: Evaluation) -> float | None:
-    reach = evaluation.assessment.reach
-    return None if reach is None else reach.highest_m
+def _reach(end: str, evaluation: Evaluation) -> float | None:
+    value: float | None = getattr(evaluation.assessment.reach, end, None)
+    return value
 
 
 def _largest(norm: Norm, task: Task, evaluation: Evaluation) -> float | None:

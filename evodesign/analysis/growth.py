@@ -58,11 +58,6 @@ class HypervolumeGrowth:
         )
 
     @property
-    def in_short(self) -> str:
-        """It for a line of progress."""
-        return f"a doubling may add {self.expected:.1%} ({self.low:.1%} to {self.high:.1%})"
-
-    @property
     def json(self) -> dict[str, Any]:
         """It as a JSON object; shares from 0 on."""
         return dict(msgspec.to_builtins(self))

@@ -56,27 +56,22 @@ class RunState:
         self._members: tuple[Evaluation, ...] = ()
         self._reference: dict[str, float] | None = None
         self._shown = 0
-        self._hypervolumes: list[float | None] = []
-        self._counts: list[int] = []
+        self._history: list[tuple[int, float | None]] = []
 
     def over(self, header: RunHeader) -> bool:
         """Whether a search is to end that gains, or promises, less than its header wants."""
-        return stagnant(self._hypervolumes, header.stagnation_generations) or exhausted(
-            [*zip(self._counts, self._hypervolumes, strict=True)], header.least_growth
-        )
-
-    @property
-    def hypervolumes(self) -> Sequence[float | None]:
-        """Hypervolume after each generation; None before the first feasible design."""
-        return self._hypervolumes
+        hypervolumes = [volume for _, volume in self._history]
+        stands_still = stagnant(hypervolumes, header.stagnation_generations)
+        return stands_still or exhausted(self._history, header.least_growth)
 
     def add(self, born: Sequence[Evaluation]) -> None:
         """Take in a generation. The first that holds a feasible design fixes the reference."""
         self._shown += len(born)
         self._reference = self._reference or reference_point(self._objectives, born)
         self._members = front(self._objectives, (*self._members, *map(_bare, born)))
-        self._hypervolumes.append(self._hypervolume())
-        self._counts.append(self._shown)
+        reference = self._reference
+        volume = None if reference is None else hypervolume(self._objectives, self._members, reference)
+        self._history.append((self._shown, volume))
 
     def generation(self, number: int, born: Iterable[Evaluation], seconds: float) -> Generation:
         """The record of a generation that was added last, and took so long [s]."""
@@ -85,7 +80,7 @@ class RunState:
             number=number,
             evaluations=self._shown,
             feasible_share=sum(feasible) / len(feasible),
-            hypervolume=self._hypervolumes[-1],
+            hypervolume=self._history[-1][1],
             reference=self._reference,
             best=best(self._objectives, self._members),
             seconds=seconds,
@@ -94,11 +89,6 @@ class RunState:
     def front(self, number: int) -> Front:
         """The front after a generation that was added last."""
         return Front(generation=number, evaluations=tuple(member.number for member in self._members))
-
-    def _hypervolume(self) -> float | None:
-        if self._reference is None:
-            return None
-        return hypervolume(self._objectives, self._members, self._reference)
 
 
 def _bare(evaluation: Evaluation) -> Evaluation:

@@ -66,7 +66,7 @@ def attainment_surfaces(
     Returns:
         None is empty: a surface that nothing attains is left out.
     """
-    fronts = [_values(pair, run) for run in runs]
+    fronts = [[values for _, values in comparable(pair, front(pair, run))] for run in runs]
     filled = [points for points in fronts if points]
     if not filled:
         return ()
@@ -79,10 +79,6 @@ def attainment_surfaces(
             corners = moocore.eaf(points, sets, percentiles=[100.0 * count / len(filled)])[:, :2]
             surfaces.append(AttainmentSurface(count / len(runs), _natural(pair, corners.tolist())))
     return tuple(surfaces)
-
-
-def _values(pair: tuple[Objective, Objective], run: Sequence[Evaluation]) -> list[tuple[float, ...]]:
-    return [values for _, values in comparable(pair, front(pair, run))]
 
 
 def _natural(

@@ -113,8 +113,11 @@ class Design:
             >>> [file.name for file in run.design(4).export("design-4")][:3]
             ['README.md', 'robot.urdf', 'robot.xml']
         """
-        from evodesign.report.cad.installed import refuse_without_cad
-        from evodesign.report.export.folder import export_logged, refuse_full  # CasADi takes its time to load
+        from evodesign.report.export.folder import (  # CasADi takes its time to load
+            export_logged,
+            refuse_full,
+            refuse_without_cad,
+        )
 
         if self.log is None:
             raise InputError("design", "", "a design of a run or of a problem", "one of neither")

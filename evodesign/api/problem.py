@@ -12,19 +12,20 @@ from typing import TYPE_CHECKING, Any
 
 from evodesign.api.design import Design
 from evodesign.design.parameter import ALLOCATIONS, ParameterKind
-from evodesign.errors import InputError, nearest_name, on_one_line
+from evodesign.errors import InputError, on_one_line
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.evaluation.factory import cached_precomputed
 from evodesign.evaluation.lifts import Lifts
 from evodesign.motion.solution import LiftSolution
 from evodesign.pool.registry import make_pool
 from evodesign.posture.precompute.precomputed import Precomputed
-from evodesign.problem.build import DesignProblem, build_problem
+from evodesign.problem.build import build_problem
 from evodesign.problem.design_space import refuse_no_choice
 from evodesign.problem.designs import beyond_bounds
 from evodesign.problem.notes import notes
 from evodesign.problem.shipped import shipped_problems
 from evodesign.problem.source import read_source, source_of
+from evodesign.problem.unknown_names import refuse_unlisted
 from evodesign.records import (
     Assessed,
     Constraint,
@@ -88,6 +89,7 @@ class Problem:
         objectives: each with sense and unit.
         constraints: each with bounds in its quantity's unit.
         unscaled: parameter values by name of the robot as its file has it.
+        built: everything that the file says, with all names resolved.
     Example:
         >>> [f"{objective.sense} {objective.name} [{objective.unit}]" for objective in problem.objectives]
         ['minimise robot_torque [N m]', 'minimise worst_human_torque [N m]', 'maximise reach_height [m]']
@@ -96,7 +98,7 @@ class Problem:
     def __init__(self, source: ProblemSource, jobs: int = 1) -> None:
         self.source = source
         self._jobs = jobs
-        self._built = problem = build_problem(source)
+        self.built = problem = build_problem(source)
         self.name = problem.name
         self.parameters: tuple[Parameter, ...] = problem.space.records
         self.objectives: tuple[Objective, ...] = problem.objectives
@@ -125,11 +127,6 @@ class Problem:
             (Hold(height_m=0.9),)
         """
         return cls(source_of(tables, folder), jobs)
-
-    @property
-    def built(self) -> DesignProblem:
-        """Everything that the file says, with all names resolved."""
-        return self._built
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -223,9 +220,7 @@ class Problem:
         names = [parameter.name for parameter in self.parameters]
         if isinstance(design, Mapping):
             for name in design:
-                if name not in names:
-                    found = f"'{name}'{nearest_name(name, names)}"
-                    raise InputError("design", "", f"parameters among {', '.join(names)}", found)
+                refuse_unlisted("design", "", name, names, f"parameters among {', '.join(names)}")
             values = {**self.unscaled, **design}
         elif len(design) == len(names):
             values = dict(zip(names, design, strict=True))

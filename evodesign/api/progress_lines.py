@@ -45,7 +45,9 @@ class SearchLines(Observer):
         """Say where the search stands."""
         self._generations.append(generation)
         known = growth(self._generations)
-        gain = "" if known is None else f"; {known.in_short}"
+        gain = ""
+        if known is not None:
+            gain = f"; a doubling may add {known.expected:.1%} ({known.low:.1%} to {known.high:.1%})"
         failed = f"; failed in this session: {causes(self._failures)}" if self._failures else ""
         line = generation_line(generation, self._budget)
         _write(self._stream, f"{line}, {self._left()} left{gain}{failed}")

@@ -91,12 +91,7 @@ def search(
     directory = new_directory(opened.name) if run is None else Path(run)
     built = opened.built
     settings = built.settings(algorithm, population, seed, asynchronous)
-    budgets = Budgets(
-        evaluations=evaluations,
-        hours=hours,
-        stagnation_generations=stagnation_generations,
-        least_growth_percent=least_growth_percent,
-    )
+    budgets = Budgets(evaluations, hours, stagnation_generations, least_growth_percent)
     workers = Workers(jobs=jobs, pool=pool, scheduler=scheduler, cache=cache)
     display = display_of(callback, progress)
     with _ended_by_time() as deadline:
@@ -148,12 +143,7 @@ def resume(
     _at_least(0, hours=hours, stagnation_generations=stagnation_generations)
     _at_least(0, least_growth_percent=least_growth_percent)
     directory = run.log.directory if isinstance(run, Run) else Path(run)
-    budgets = Budgets(
-        evaluations=evaluations,
-        hours=hours,
-        stagnation_generations=stagnation_generations,
-        least_growth_percent=least_growth_percent,
-    )
+    budgets = Budgets(evaluations, hours, stagnation_generations, least_growth_percent)
     workers = Workers(jobs=jobs, pool=pool, scheduler=scheduler, cache=cache)
     display = display_of(callback, progress)
     with _ended_by_time() as deadline:

@@ -36,7 +36,7 @@ from evodesign.searches.registry import make_asynchronous_search, make_search
 from evodesign.session import Display, Evaluate
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Budgets:
     """When a search ends, where not as the problem or the log says.
 

@@ -15,7 +15,7 @@ pseudovector -M a by q.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -69,6 +69,12 @@ class Placement:
     def from_xyz_wxyz(cls, xyz: Sequence[float], wxyz: Sequence[float]) -> Placement:
         """Placement by position [m] and a quaternion of any length but zero."""
         return cls(matrix_from_wxyz(wxyz), (xyz[0], xyz[1], xyz[2]))
+
+
+def vector(numbers: Iterable[float]) -> Vector:
+    """Three numbers as a tuple."""
+    x, y, z = map(float, numbers)
+    return (x, y, z)
 
 
 def add(a: Vector, b: Vector) -> Vector:

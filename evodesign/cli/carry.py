@@ -7,21 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from evodesign.cli import damage
-from evodesign.cli.options import (
-    CORES,
-    CarriedHeights,
-    Damaged,
-    Damping,
-    Design,
-    Frequency,
-    Jobs,
-    Json,
-    Payload,
-    Person,
-    RunPath,
-    Video,
-)
+from evodesign.cli import options
 from evodesign.simulation.installed import draw_without_a_screen, refuse_without_a_controller
 
 if TYPE_CHECKING:
@@ -31,11 +17,11 @@ if TYPE_CHECKING:
 
 
 def carry(
-    run: RunPath,
-    design: Design,
-    height: CarriedHeights = None,
-    person: Person = None,
-    payload: Payload = None,
+    run: options.RunPath,
+    design: options.Design,
+    height: options.CarriedHeights = None,
+    person: options.Person = None,
+    payload: options.Payload = None,
     distance: Annotated[float, typer.Option(metavar="M", help="How far they walk [m].")] = 2.0,
     direction: Annotated[
         float,
@@ -48,19 +34,19 @@ def carry(
         float | None,
         typer.Option(metavar="KG", help="Another mass of the load [kg].", show_default="the problem's"),
     ] = None,
-    frequency: Frequency = 8.0,
-    damping: Damping = 1.0,
-    video: Video = None,
-    jobs: Jobs = CORES,
-    json: Json = False,
-    damaged: Damaged = False,
+    frequency: options.Frequency = 8.0,
+    damping: options.Damping = 1.0,
+    video: options.Video = None,
+    jobs: options.Jobs = options.CORES,
+    json: options.Json = False,
+    damaged: options.Damaged = False,
 ) -> None:
     """Let a design's robot and person walk with the load in MuJoCo, under whole-body controllers."""
     refuse_without_a_controller()
     draw_without_a_screen()
     from evodesign.cli.output import console, print_json, show_notes, write_bytes
     from evodesign.cli.progress import precompute_progress
-    from evodesign.cli.tables.carry import carries_table
+    from evodesign.cli.tables.simulation import carries_table
     from evodesign.control.gains import Feedback
     from evodesign.evaluation.carries import carried_holds, carries_json
     from evodesign.evaluation.pushes import pushed_holds
@@ -94,7 +80,7 @@ def carry(
             for name, agent in case.outcome.agents.items()
             if agent.saturated
         )
-    damage.end(logged, accepted=damaged)
+    options.end_damaged(logged, accepted=damaged)
 
 
 def _middle(holds: Sequence[CaseDetail]) -> list[CaseDetail]:

@@ -7,8 +7,7 @@ from typing import Annotated
 
 import typer
 
-from evodesign.cli import damage
-from evodesign.cli.options import Damaged, Json
+from evodesign.cli.options import Damaged, Json, end_damaged
 from evodesign.errors import InputError
 
 
@@ -47,4 +46,4 @@ def compare(
         for table in comparison_tables(each):
             console().print(table)
         print_lines(*map(printable, lines_after(each)))
-    damage.end(*opened, accepted=damaged)
+    end_damaged(*opened, accepted=damaged)

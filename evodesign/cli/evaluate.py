@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
-from evodesign.cli.options import CORES, NOTHING_SOLVED, Jobs, Json, Plot, ProblemPath, SymmetryName
-from evodesign.errors import InputError, nearest_name
+from evodesign.cli import options
+from evodesign.errors import InputError
 from evodesign.files import make_folder
 
 if TYPE_CHECKING:
@@ -20,19 +20,13 @@ UNSCALED = "unscaled"
 
 
 def evaluate(
-    problem: ProblemPath,
-    design: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="File of named designs.", show_default="the unscaled robot"),
-    ] = None,
-    name: Annotated[
-        str | None,
-        typer.Option(metavar="NAME", help="Which design of the file.", show_default="the file's only one"),
-    ] = None,
-    symmetry: SymmetryName = None,
-    jobs: Jobs = CORES,
-    json: Json = False,
-    plot: Plot = None,
+    problem: options.ProblemPath,
+    design: options.DesignsFile = None,
+    name: options.DesignName = None,
+    symmetry: options.SymmetryName = None,
+    jobs: options.Jobs = options.CORES,
+    json: options.Json = False,
+    plot: options.Plot = None,
 ) -> None:
     """One design in full: reach, postures, torques, wrenches, residuals. Exit code 5: no case is solved."""
     from evodesign.analysis.people_spread import spread_json
@@ -77,7 +71,7 @@ def evaluate(
             console().print(table)
         show_notes(overlaps(solved_distances(result).items()))
     if not any(case.solved for case in result.cases):
-        raise typer.Exit(NOTHING_SOLVED)
+        raise typer.Exit(options.NOTHING_SOLVED)
 
 
 def _spread(built: DesignProblem, values: tuple[float, ...], jobs: int) -> PeopleSpread:
@@ -124,6 +118,7 @@ def _named_design(
     """The design of a name in a file; without a file the unscaled robot."""
     from evodesign.problem.designs import read_designs
     from evodesign.problem.named_files import read_text
+    from evodesign.problem.unknown_names import refuse_unlisted
 
     tree = problem.scene.designed_tree
     if file is None:
@@ -133,9 +128,8 @@ def _named_design(
     designs = read_designs(read_text(file, "--design", ""), str(file), problem.space, tree)
     if name is None and len(designs) == 1:
         name = next(iter(designs))
+    wanted = f"one of the designs {', '.join(designs)} of '{file}'"
     if name is None:
-        raise InputError("--name", "", f"one of the designs {', '.join(designs)} of '{file}'", "nothing")
-    if name not in designs:
-        wanted = f"one of the designs {', '.join(designs)} of '{file}'"
-        raise InputError("--name", "", wanted, f"'{name}'{nearest_name(name, designs)}")
+        raise InputError("--name", "", wanted, "nothing")
+    refuse_unlisted("--name", "", name, designs, wanted)
     return name, designs[name]

@@ -7,8 +7,7 @@ from typing import Annotated
 
 import typer
 
-from evodesign.cli import damage
-from evodesign.cli.options import CORES, Damaged, Design, Jobs, RunPath
+from evodesign.cli.options import CORES, Damaged, Design, Jobs, RunPath, end_damaged
 
 
 def export(
@@ -25,8 +24,7 @@ def export(
     """One design of a run as files: URDF, MJCF, postures, and a replay for Foxglove and Lichtblick."""
     from evodesign.cli.output import print_lines, show_notes
     from evodesign.cli.progress import precompute_progress
-    from evodesign.report.cad.installed import refuse_without_cad
-    from evodesign.report.export.folder import export_logged, refuse_full
+    from evodesign.report.export.folder import export_logged, refuse_full, refuse_without_cad
     from evodesign.runlog.run import read_run
 
     refuse_full(to)  # before anything takes time
@@ -38,4 +36,4 @@ def export(
         done = export_logged(logged, design, to, jobs, progress, cad=cad)
     show_notes(f"no {name}: {reason}" for name, reason in done.left_out.items())
     print_lines(*map(str, done.files))
-    damage.end(logged, accepted=damaged)
+    end_damaged(logged, accepted=damaged)

@@ -6,8 +6,7 @@ from typing import Annotated
 
 import typer
 
-from evodesign.cli import damage
-from evodesign.cli.options import Damaged, Json, RunPath
+from evodesign.cli.options import Damaged, Json, RunPath, end_damaged
 
 
 def families(
@@ -47,4 +46,4 @@ def families(
         if found.kinds:
             console().print(families_table(opened.header, found))
         print_lines(printable(families_line(found)))
-    damage.end(opened, accepted=damaged)
+    end_damaged(opened, accepted=damaged)

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from evodesign.cli import damage
-from evodesign.cli.options import Damaged, Json, RunPath
+from evodesign.cli.options import Damaged, Json, RunPath, end_damaged
 from evodesign.errors import InputError
 
 if TYPE_CHECKING:
@@ -75,7 +74,7 @@ def front(
 
         write_text(plot, front_html(opened.header, opened.evaluations), "--plot")
     print_front(opened, choice, json=json, csv=csv)
-    damage.end(opened, accepted=damaged)
+    end_damaged(opened, accepted=damaged)
 
 
 def _choice(

@@ -24,7 +24,7 @@ def init(
     guessed is FILL IN in the file. The schema beside it lets editors check and complete it.
     """
     from evodesign.cli.output import console, print_commands, show_notes, write_text
-    from evodesign.cli.tables.guesses import guesses_table
+    from evodesign.cli.tables.table import names, titled
     from evodesign.errors import InputError
     from evodesign.files import is_there
     from evodesign.guess.problem_text import guessed_problem, inertia_rule
@@ -46,5 +46,6 @@ def init(
     write_text(file, with_schema_line(guessed.text), "--to")
     write_text(file.parent / SCHEMA_FILE, schema_file(), "--to")
     show_notes(tree.notes)
-    console().print(guesses_table(guessed.guesses, FILL_IN))
+    rows = ((guess.key, guess.found or FILL_IN, guess.why) for guess in guessed.guesses)
+    console().print(titled("guessed", names("key", "guess", "because"), rows))
     print_commands(f"evodesign check {file}", f"evodesign evaluate {file}", f"evodesign search {file}")

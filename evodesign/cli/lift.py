@@ -7,40 +7,25 @@ from typing import Annotated
 
 import typer
 
+from evodesign.cli import options
 from evodesign.cli.evaluate import chosen_design
-from evodesign.cli.options import (
-    CORES,
-    NOTHING_SOLVED,
-    Jobs,
-    Json,
-    Knots,
-    ProblemPath,
-    ProfileName,
-    SymmetryName,
-)
 
 
 def lift(
-    problem: ProblemPath,
+    problem: options.ProblemPath,
     begin: Annotated[float, typer.Option("--from", metavar="M", help="Height of the load at the start [m].")],
     end: Annotated[float, typer.Option("--to", metavar="M", help="Height at the end [m].")],
-    design: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="File of named designs.", show_default="the unscaled robot"),
-    ] = None,
-    name: Annotated[
-        str | None,
-        typer.Option(metavar="NAME", help="Which design of the file.", show_default="the file's only one"),
-    ] = None,
+    design: options.DesignsFile = None,
+    name: options.DesignName = None,
     seconds: Annotated[float, typer.Option(metavar="S", help="Time that the lift takes [s].")] = 1.5,
-    profile: ProfileName = "minimum_jerk",
-    knots: Knots = 12,
+    profile: options.ProfileName = "minimum_jerk",
+    knots: options.Knots = 12,
     csv: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write joints and torques over time.")
     ] = None,
-    symmetry: SymmetryName = None,
-    jobs: Jobs = CORES,
-    json: Json = False,
+    symmetry: options.SymmetryName = None,
+    jobs: options.Jobs = options.CORES,
+    json: options.Json = False,
 ) -> None:
     """A design and a person lift the load: torques over time, energy, power, residuals.
 
@@ -48,7 +33,7 @@ def lift(
     """
     from evodesign.cli.output import console, print_json, show_notes, write_text
     from evodesign.cli.progress import precompute_progress
-    from evodesign.cli.tables.lift import lift_tables
+    from evodesign.cli.tables.simulation import lift_tables
     from evodesign.evaluation.factory import evaluator_of
     from evodesign.evaluation.lift_json import lift_csv, lift_json
     from evodesign.evaluation.lifts import Lifts
@@ -72,4 +57,4 @@ def lift(
         for table in lift_tables(f"{built.name}: {chosen}", solutions):
             console().print(table)
     if not any(each.solved for each in solutions.values()):
-        raise typer.Exit(NOTHING_SOLVED)
+        raise typer.Exit(options.NOTHING_SOLVED)

@@ -6,8 +6,7 @@ from typing import Annotated
 
 import typer
 
-from evodesign.cli import damage
-from evodesign.cli.options import Damaged, Json, RunPath
+from evodesign.cli.options import Damaged, Json, RunPath, end_damaged
 
 
 def matters(
@@ -40,4 +39,4 @@ def matters(
         for table in tables:
             console().print(table)
         print_lines(*map(printable, found.sentences))
-    damage.end(opened, accepted=damaged)
+    end_damaged(opened, accepted=damaged)

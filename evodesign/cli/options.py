@@ -6,17 +6,23 @@ import math
 import os
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from evodesign.simulation.installed import EngineName
+
+if TYPE_CHECKING:
+    from evodesign.runlog.run import RunLog
 
 BAD_INPUT = 2
 """Exit code of what a user gave wrong."""
 
 NOTHING_SOLVED = 5
 """Exit code where no case has a posture, or every evaluation of a first generation failed for one reason."""
+
+FROM_DAMAGED = 4
+"""Exit code of a command that is done, from a damaged run."""
 
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
@@ -44,6 +50,20 @@ NewRun = Annotated[
     typer.Option("--run", metavar="DIR", help="Directory of the new run.", show_default="in runs/"),
 ]
 Design = Annotated[int, typer.Argument(metavar="DESIGN", min=0, help="Number of an evaluation of the run.")]
+DesignsFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--design", metavar="FILE", help="File of named designs.", show_default="the unscaled robot"
+    ),
+]
+
+DesignName = Annotated[
+    str | None,
+    typer.Option(
+        "--name", metavar="NAME", help="Which design of the file.", show_default="the file's only one"
+    ),
+]
+
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
 Plot = Annotated[
     Path | None,
@@ -153,3 +173,17 @@ UseCache = Annotated[
 ProfileName = Annotated[
     str, typer.Option("--profile", metavar="NAME", help="Height in time: minimum_jerk or free.")
 ]
+
+
+def end_damaged(*runs: RunLog, accepted: bool) -> None:
+    """End the command with its exit code if a run is damaged, unless the user accepts that."""
+    from evodesign.cli.output import show_notes
+
+    damaged = [run for run in runs if run.damaged]
+    if damaged and not accepted:
+        show_notes(
+            f"{run.directory} is damaged, so this is not all that it found: exit code {FROM_DAMAGED}, "
+            "or 0 with --damaged"
+            for run in damaged
+        )
+        raise typer.Exit(FROM_DAMAGED)

@@ -9,21 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from evodesign.cli import damage
-from evodesign.cli.options import (
-    CORES,
-    Damaged,
-    Damping,
-    Design,
-    Engine,
-    Frequency,
-    Jobs,
-    Json,
-    Payload,
-    Person,
-    PushedHeights,
-    RunPath,
-)
+from evodesign.cli import options
 from evodesign.errors import InputError
 from evodesign.simulation.installed import EngineName, draw_without_a_screen, refuse_without_a_controller
 
@@ -34,11 +20,11 @@ if TYPE_CHECKING:
 
 
 def push(
-    run: RunPath,
-    design: Design,
-    height: PushedHeights = None,
-    person: Person = None,
-    payload: Payload = None,
+    run: options.RunPath,
+    design: options.Design,
+    height: options.PushedHeights = None,
+    person: options.Person = None,
+    payload: options.Payload = None,
     direction: Annotated[
         list[float] | None,
         typer.Option(
@@ -51,18 +37,18 @@ def push(
     spread: Annotated[
         bool, typer.Option("--spread", help="Also with other friction, load and late sensors.")
     ] = False,
-    frequency: Frequency = 8.0,
-    damping: Damping = 1.0,
-    engine: Engine = EngineName.MUJOCO,
-    jobs: Jobs = CORES,
-    json: Json = False,
-    damaged: Damaged = False,
+    frequency: options.Frequency = 8.0,
+    damping: options.Damping = 1.0,
+    engine: options.Engine = EngineName.MUJOCO,
+    jobs: options.Jobs = options.CORES,
+    json: options.Json = False,
+    damaged: options.Damaged = False,
 ) -> None:
     """Push a design's robot, under whole-body controllers, to the largest impulses it survives."""
     refuse_without_a_controller(engine)
     from evodesign.cli.output import console, print_json, show_notes
     from evodesign.cli.progress import precompute_progress
-    from evodesign.cli.tables.push import margins_table
+    from evodesign.cli.tables.simulation import margins_table
     from evodesign.control.gains import Feedback
     from evodesign.evaluation.pushes import found_margins, margins_json
     from evodesign.report.opened_design import open_design
@@ -85,7 +71,7 @@ def push(
     else:
         title = f"{logged.header.problem_name}: pushes that design {design} survives in {engine.label}"
         console().print(margins_table(title, found))
-    damage.end(logged, accepted=damaged)
+    options.end_damaged(logged, accepted=damaged)
 
 
 def push_once(
@@ -122,7 +108,7 @@ def push_once(
     draw_without_a_screen()
     from evodesign.cli.output import console, print_json, write_bytes
     from evodesign.cli.progress import precompute_progress
-    from evodesign.cli.tables.push import pushes_table
+    from evodesign.cli.tables.simulation import pushes_table
     from evodesign.control.gains import Feedback
     from evodesign.evaluation.pushes import outcome_json
     from evodesign.report.opened_design import open_design

@@ -7,8 +7,7 @@ from typing import Annotated
 
 import typer
 
-from evodesign.cli import damage
-from evodesign.cli.options import CORES, Damaged, Jobs, RunPath
+from evodesign.cli.options import CORES, Damaged, Jobs, RunPath, end_damaged
 from evodesign.errors import InputError
 
 DEFAULT = "report.html"
@@ -51,7 +50,7 @@ def report(
     page = page_html(content)
     write_text(path, page, "--output", follow=output is not None)
     print_lines(f"{path} ({len(page.encode()) / 1e6:.1f} MB)")
-    damage.end(opened, accepted=damaged)
+    end_damaged(opened, accepted=damaged)
 
 
 def _numbers(text: str) -> tuple[int, ...]:

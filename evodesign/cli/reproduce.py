@@ -135,10 +135,8 @@ def _first(experiment: Experiment, without: DesignProblem, starts: int) -> _Show
 
 def _sequel(experiment: Experiment) -> _Shown:
     """The experiment of 2023."""
-    from evodesign.cli.tables.reproduction import claims_table
-    from evodesign.cli.tables.sequel import robots_table, sequel_lines
-    from evodesign.reproduction.codesign2023 import sequel_reproduction
-    from evodesign.reproduction.files2023 import sequel_json, write_sequel
+    from evodesign.cli.tables.reproduction import claims_table, robots_table, sequel_lines
+    from evodesign.reproduction.codesign2023 import sequel_json, sequel_reproduction, write_sequel
 
     done, directory = sequel_reproduction(experiment), experiment.directory
     files = write_sequel(directory, done)
@@ -151,10 +149,13 @@ def _sequel(experiment: Experiment) -> _Shown:
 
 def _third(experiment: Experiment) -> _Shown:
     """The robots of 2025."""
-    from evodesign.cli.tables.ergonomic import ergonomic_lines, height_figures, robots_of_2025
-    from evodesign.cli.tables.reproduction import claims_table
-    from evodesign.reproduction.ergonomic2025 import ergonomic_reproduction
-    from evodesign.reproduction.files2025 import ergonomic_json, write_ergonomic
+    from evodesign.cli.tables.reproduction import (
+        claims_table,
+        ergonomic_lines,
+        height_figures,
+        robots_of_2025,
+    )
+    from evodesign.reproduction.ergonomic2025 import ergonomic_json, ergonomic_reproduction, write_ergonomic
 
     done, directory = ergonomic_reproduction(experiment), experiment.directory
     files = write_ergonomic(directory, done)

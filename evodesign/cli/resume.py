@@ -27,17 +27,11 @@ def resume(
 ) -> None:
     """Go on with a run that was stopped or killed, or give a finished one a larger budget."""
     from evodesign.api.sessions import Budgets, Workers, proceed
-    from evodesign.cli.session import DISPLAY, show_result
-    from evodesign.cli.stopping import SignalledStop
+    from evodesign.cli.session import DISPLAY, SignalledStop, show_result
 
     done = proceed(
         run,
-        Budgets(
-            evaluations=evaluations,
-            hours=hours,
-            stagnation_generations=stagnation_generations,
-            least_growth_percent=least_growth_percent,
-        ),
+        Budgets(evaluations, hours, stagnation_generations, least_growth_percent),
         Workers(jobs=jobs, pool=pool, scheduler=scheduler, cache=cache),
         DISPLAY,
         partial(SignalledStop, run=run),

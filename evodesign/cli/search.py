@@ -37,8 +37,7 @@ def search(
 ) -> None:
     """Search a problem's designs; every evaluation is logged, and the search can be stopped and resumed."""
     from evodesign.api.sessions import Budgets, Workers, begin, new_directory
-    from evodesign.cli.session import DISPLAY, show_result
-    from evodesign.cli.stopping import SignalledStop
+    from evodesign.cli.session import DISPLAY, SignalledStop, show_result
     from evodesign.problem.build import build_problem
     from evodesign.problem.source import read_source
 
@@ -48,12 +47,7 @@ def search(
         built,
         directory,
         built.settings(algorithm, population, seed, asynchronous),
-        Budgets(
-            evaluations=evaluations,
-            hours=hours,
-            stagnation_generations=stagnation_generations,
-            least_growth_percent=least_growth_percent,
-        ),
+        Budgets(evaluations, hours, stagnation_generations, least_growth_percent),
         Workers(jobs=jobs, pool=pool, scheduler=scheduler, cache=cache),
         DISPLAY,
         partial(SignalledStop, run=directory),

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, TypeVar
 
-from evodesign.cli import damage
-from evodesign.cli.options import CORES, Damaged, Design, Jobs, Json, Plot, RunPath
+from evodesign.cli.options import CORES, Damaged, Design, Jobs, Json, Plot, RunPath, end_damaged
 from evodesign.errors import InputError
 from evodesign.files import make_folder
 
 if TYPE_CHECKING:
-    from evodesign.collision.clearance import BodyDistance
-    from evodesign.quantities.ergonomics import Ergonomics
-    from evodesign.records import Case
     from evodesign.report.opened_design import OpenedDesign
+
+T = TypeVar("T")
 
 
 def show(
@@ -44,16 +44,19 @@ def show(
         name = f"{logged.header.problem_name}, design {design}"
         figures = write_design_figures(name, opened.scene_set(), opened.cases, plot)
         show_notes(f"written: {path}" for path in figures)
+    ergonomics = partial(_part, opened.ergonomics, "what the postures ask of the person")
+    bill = partial(_part, opened.bill, "the bill of materials")
+    distances = partial(_part, opened.body_distances, "how near bodies come to each other")
     if json:
         from evodesign.analysis.people_spread import spread_json
         from evodesign.quantities.ergonomics import ergonomics_json  # CasADi takes its time to load
         from evodesign.report.export.design import design_json
 
         told = design_json(opened.run.header, opened.evaluation, opened.cases, on_front=opened.on_front)
-        asked = [ergonomics_json(one) for one in _ergonomics(opened)]
-        nearest = [task_names(case) | distance_json(each) for case, each in _distances(opened).items()]
-        bill, spread = _bill(opened), opened.spread()
-        hardware = {"hardware": bill} if bill else {}
+        asked = [ergonomics_json(one) for one in ergonomics() or ()]
+        nearest = [task_names(case) | distance_json(each) for case, each in (distances() or {}).items()]
+        built_of, spread = bill(), opened.spread()
+        hardware = {"hardware": built_of} if built_of else {}
         people = {} if spread is None else {"spread": spread_json(spread, design)}
         print_json(
             {"run": str(run), **told, **people, **hardware, "ergonomics": asked, "clearances": nearest}
@@ -61,20 +64,20 @@ def show(
     else:
         from evodesign.cli.tables.card import card
 
-        console().print(card(opened, _ergonomics(opened), _bill(opened)))
-        show_notes([*overlaps(_distances(opened).items()), *_assumed(opened)])
-    damage.end(logged, accepted=damaged)
+        console().print(card(opened, ergonomics() or (), bill() or {}))
+        show_notes([*overlaps((distances() or {}).items()), *_assumed(opened)])
+    end_damaged(logged, accepted=damaged)
 
 
-def _ergonomics(opened: OpenedDesign) -> tuple[Ergonomics, ...]:
-    """What the postures ask of the people; none, and a note, if the people cannot be told."""
+def _part(ask: Callable[[], T], what: str) -> T | None:
+    """A part of what is shown; None, and a note, if the problem cannot tell it or cannot be built here."""
     from evodesign.cli.output import show_notes
 
     try:
-        return opened.ergonomics()
+        return ask()
     except InputError as error:
-        show_notes([f"what the postures ask of the person is left out ({error})"])
-        return ()
+        show_notes([f"{what} is left out ({error})"])
+        return None
 
 
 def _assumed(opened: OpenedDesign) -> tuple[str, ...]:
@@ -85,25 +88,3 @@ def _assumed(opened: OpenedDesign) -> tuple[str, ...]:
         return tuple(assumed_heights(opened.rebuilt.problem))
     except InputError:
         return ()  # said beside the other parts
-
-
-def _bill(opened: OpenedDesign) -> dict[str, Any]:
-    """What it is built of; none, and a note, if the problem cannot be built here."""
-    from evodesign.cli.output import show_notes
-
-    try:
-        return opened.bill()
-    except InputError as error:
-        show_notes([f"the bill of materials is left out ({error})"])
-        return {}
-
-
-def _distances(opened: OpenedDesign) -> dict[Case, BodyDistance]:
-    """How near bodies come in its postures; none, and a note, if the problem cannot be built here."""
-    from evodesign.cli.output import show_notes
-
-    try:
-        return opened.body_distances()
-    except InputError as error:
-        show_notes([f"how near bodies come to each other is left out ({error})"])
-        return {}

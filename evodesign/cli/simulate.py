@@ -8,24 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from evodesign.cli import damage
-from evodesign.cli.options import (
-    CORES,
-    Damaged,
-    Damping,
-    Design,
-    Engine,
-    Frequency,
-    Heights,
-    Jobs,
-    Json,
-    Knots,
-    Payload,
-    Person,
-    ProfileName,
-    RunPath,
-    Video,
-)
+from evodesign.cli import options
 from evodesign.errors import InputError
 from evodesign.simulation.installed import EngineName, draw_without_a_screen, refuse_without_mujoco
 
@@ -35,11 +18,11 @@ if TYPE_CHECKING:
 
 
 def simulate(
-    run: RunPath,
-    design: Design,
-    height: Heights = None,
-    person: Person = None,
-    payload: Payload = None,
+    run: options.RunPath,
+    design: options.Design,
+    height: options.Heights = None,
+    person: options.Person = None,
+    payload: options.Payload = None,
     begin: Annotated[
         float | None,
         typer.Option("--from", metavar="M", help="Another lift: height of the load at the start [m]."),
@@ -49,10 +32,10 @@ def simulate(
         float | None,
         typer.Option(metavar="S", help="Time [s].", show_default="2 for a hold, 1.5 for a lift"),
     ] = None,
-    profile: ProfileName = "minimum_jerk",
-    knots: Knots = 24,
-    frequency: Frequency = 8.0,
-    damping: Damping = 1.0,
+    profile: options.ProfileName = "minimum_jerk",
+    knots: options.Knots = 24,
+    frequency: options.Frequency = 8.0,
+    damping: options.Damping = 1.0,
     push: Annotated[
         float | None,
         typer.Option(
@@ -62,14 +45,14 @@ def simulate(
     direction: Annotated[
         float, typer.Option(metavar="DEG", help="To where, from forwards to the left.")
     ] = 0.0,
-    engine: Engine = EngineName.MUJOCO,
+    engine: options.Engine = EngineName.MUJOCO,
     mcap: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write a recording for Foxglove and Lichtblick.")
     ] = None,
-    video: Video = None,
-    jobs: Jobs = CORES,
-    json: Json = False,
-    damaged: Damaged = False,
+    video: options.Video = None,
+    jobs: options.Jobs = options.CORES,
+    json: options.Json = False,
+    damaged: options.Damaged = False,
 ) -> None:
     """Simulate holds and lifts of a design in MuJoCo: contacts, motors, feedback; how far from the plan."""
     if push is not None:
@@ -136,7 +119,7 @@ def simulate(
             for name, agent in each.outcome.agents.items()
             if agent.at_limit
         )
-    damage.end(logged, accepted=damaged)
+    options.end_damaged(logged, accepted=damaged)
 
 
 def _write_recording(path: Path, opened: OpenedDesign, simulations: Sequence[SimulatedCase]) -> None:

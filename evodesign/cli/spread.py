@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from evodesign.cli import damage, options
+from evodesign.cli import options
 
 
 def spread(
@@ -41,8 +41,7 @@ def spread(
     from evodesign.api.sessions import Workers
     from evodesign.api.spread import spread_over_people
     from evodesign.cli.output import console, print_json, print_lines, show_notes
-    from evodesign.cli.session import DISPLAY
-    from evodesign.cli.stopping import SignalledStop
+    from evodesign.cli.session import DISPLAY, SignalledStop
     from evodesign.cli.tables.spread import spread_table
     from evodesign.runlog.run import read_run
 
@@ -58,4 +57,4 @@ def spread(
     else:
         console().print(spread_table(found, logged.header.objectives, logged.header.constrained))
         print_lines(spread_sentence(found))
-    damage.end(logged, accepted=damaged)
+    options.end_damaged(logged, accepted=damaged)

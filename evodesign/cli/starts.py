@@ -9,7 +9,7 @@ def starts(problem: ProblemPath, jobs: Jobs = CORES, json: Json = False) -> None
     """The starts from which a problem is solved, and how well they serve other designs."""
     from evodesign.cli.output import console, print_json
     from evodesign.cli.progress import precompute_progress
-    from evodesign.cli.tables.starts import starts_json, starts_table
+    from evodesign.cli.tables.problem import starts_json, starts_table
     from evodesign.evaluation.factory import cached_precomputed
     from evodesign.pool.registry import make_pool
     from evodesign.problem.build import build_problem

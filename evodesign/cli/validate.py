@@ -79,7 +79,7 @@ def validate(
 
         show_notes(f"written: {path}" for path in write_validation_figures(compared, plot))
     if json:
-        from evodesign.validation.as_json import validation_json
+        from evodesign.validation.agreement import validation_json
 
         print_json(validation_json(compared, holds))
         return

@@ -27,6 +27,7 @@ from evodesign.posture.allocation import shared_scene
 from evodesign.posture.check import AgentModel, Checker, Unchecked
 from evodesign.posture.design_checkers import with_hardware
 from evodesign.posture.formulations.reach import HIGHEST, LOWEST, Reach, common_reach
+from evodesign.posture.postures import PostureProblem
 from evodesign.posture.precompute.precomputed import Precomputed
 from evodesign.posture.results import CaseSolution, Neighbour
 from evodesign.posture.seeking.exchange import other_ways
@@ -42,6 +43,8 @@ Cases = tuple[CaseSolution, ...]
 
 LESS = "less was tried, as another case has no posture"
 NOT_TRIED = "not tried, as another case has no posture"
+
+UNCHECKED = Unchecked()
 
 
 class DesignSolver:
@@ -166,20 +169,14 @@ class _OneDesign:
         """Postures of every case from one start each, not checked; none where something is lifted as well."""
         if not all(isinstance(case.task, Hold) for case in self._problem.cases):
             return ()
-        postures = self._solver.inner.postures
-        return tuple(postures[case.pair].sketched(values, case.task) for case in self._problem.cases)
-
-    def first(self, values: Sequence[float]) -> Cases:
-        """Postures of every case, not checked."""
-        return self._cases(values, None, Unchecked())
+        return tuple(self._postures(case).sketched(values, case.task) for case in self._problem.cases)
 
     def following(self, values: Sequence[float], before: Cases) -> Cases:
         """Those near the postures of another round, not checked."""
         found: list[CaseSolution] = []
         for solution in before:
-            postures = self._solver.inner.postures[solution.case.pair]
-            near = postures.followed(values, solution) if solution.solved else solution
-            found.append(near or self._in_case(values, solution.case, None, Unchecked()))
+            near = self._postures(solution.case).followed(values, solution) if solution.solved else solution
+            found.append(near or self._in_case(values, solution.case, None, UNCHECKED))
         return tuple(found)
 
     def result(self, values: Sequence[float], before: Cases = ()) -> DesignResult:
@@ -192,7 +189,7 @@ class _OneDesign:
         robots = self._driven(tree) if problem.space.driven else self._robots
         reach = self._reach(values)
         check = Checker(problem.scene, *robots, *solver.people[problem.scene.pair[0]])
-        return self._of_cases(values, reach, self._cases(values, reach, check, before))
+        return self._of_cases(values, reach, self.cases(values, reach, check, before))
 
     def _driven(self, tree: Tree) -> tuple[AgentModel, ...]:
         """The robots with the actuators of a tree, which hold what they can, if designs change them."""
@@ -225,10 +222,23 @@ class _OneDesign:
     def _reach(self, values: Sequence[float]) -> Reach:
         return common_reach([reach.solve(values) for reach in self._solver.inner.reaches.values()])
 
-    def _cases(
-        self, values: Sequence[float], reach: Reach | None, check: Checker, before: Cases = ()
+    def cases(
+        self,
+        values: Sequence[float],
+        reach: Reach | None = None,
+        check: Checker = UNCHECKED,
+        before: Cases = (),
     ) -> Cases:
-        """Holds first, at last those that were not found at once; then lifts, which go between holds."""
+        """Postures of every case: holds first, at last those that were not found at once; then lifts.
+
+        A lift goes between holds.
+
+        Args:
+            values: that programs are given.
+            reach: of the design; left out, it is asked for where a case has no posture.
+            check: of the design; left out, postures are not checked.
+            before: what another round found, near which postures are.
+        """
         cases, found = self._problem.cases, dict[Case, CaseSolution]()
         lifts = {case: case.task for case in cases if isinstance(case.task, Lift)}
         for case, earlier in zip(cases, before or [None] * len(cases), strict=True):
@@ -238,7 +248,9 @@ class _OneDesign:
                 near = self._neighbour([*found.values()], case)
                 if earlier is not None:
                     near = Neighbour(earlier, unchecked=True)
-                found[case] = self._begun(values, case, reach, check, near)
+                found[case] = _beyond(case, reach) or self._postures(case).begun(
+                    values, case.task, self._checker(values, case, check), near, polished=reach is not None
+                )
         lost = False
         for begun in [*found.values()]:
             if begun.attempts and not begun.solved and all(begun is not earlier for earlier in before):
@@ -260,9 +272,9 @@ class _OneDesign:
         for own in solved:
             others = other_ways(own, self._similar(solved, own.case), robots)
             if others:
-                postures, polished = self._solver.inner.postures[own.case.pair], reach is not None
-                checker = self._checker(values, own.case, check)
-                found[own.case] = postures.improved(values, own, others, checker, polished=polished)
+                found[own.case] = self._postures(own.case).improved(
+                    values, own, others, self._checker(values, own.case, check), polished=reach is not None
+                )
         return found
 
     def _lifted(
@@ -322,26 +334,13 @@ class _OneDesign:
         found: Sequence[CaseSolution] = (),
     ) -> CaseSolution:
         """The posture in a case, beside what is found of others."""
-        begun = self._begun(values, case, reach, check, self._neighbour(found, case))
+        near, checker = self._neighbour(found, case), self._checker(values, case, check)
+        begun = _beyond(case, reach) or self._postures(case).begun(
+            values, case.task, checker, near, polished=reach is not None
+        )
         if begun.solved or not begun.attempts:
             return begun
         return self._searched(values, begun, reach, check, found)
-
-    def _begun(
-        self,
-        values: Sequence[float],
-        case: Case,
-        reach: Reach | None,
-        check: Checker,
-        neighbour: Neighbour | None,
-    ) -> CaseSolution:
-        """What the formulation that is tried first leads to, unless the case is known to be out of reach."""
-        beyond = None if reach is None else _beyond(case, reach)
-        if beyond is not None:
-            return beyond
-        checker = self._checker(values, case, check)
-        postures, polished = self._solver.inner.postures[case.pair], reach is not None
-        return postures.begun(values, case.task, checker, neighbour, polished=polished)
 
     def _searched(
         self,
@@ -363,7 +362,7 @@ class _OneDesign:
             return beyond
         if lost:
             return replace(begun, reason=f"{begun.reason} ({LESS})")
-        return self._solver.inner.postures[case.pair].solve(
+        return self._postures(case).solve(
             values,
             case.task,
             self._checker(values, case, check),
@@ -400,6 +399,9 @@ class _OneDesign:
         others.sort(key=lambda each: abs(each.case.task.heights[0] - case.task.heights[0]))
         return [Neighbour(each) for each in others]
 
+    def _postures(self, case: Case) -> PostureProblem:
+        return self._solver.inner.postures[case.pair]
+
     def _checker(self, values: Sequence[float], case: Case, check: Checker) -> Checker:
         """The check, in a case."""
         scene = shared_scene(self._problem.scene_of(case), self._problem.space, values)
@@ -411,8 +413,10 @@ def _joints(scene: Scene) -> tuple[tuple[str, ...], ...]:
     return tuple(person.joints for person in scene.people)
 
 
-def _beyond(case: Case, reach: Reach) -> CaseSolution | None:
-    """Why there is no posture in a case whose heights are out of reach; None within it."""
+def _beyond(case: Case, reach: Reach | None) -> CaseSolution | None:
+    """Why there is no posture in a case whose heights are out of reach; None within it, or if unknown."""
+    if reach is None:
+        return None
     distance = reach.beyond(case.task.heights)
     if distance is None:
         return CaseSolution(case, reach.status, reach.reason)

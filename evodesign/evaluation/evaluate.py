@@ -79,7 +79,7 @@ class Evaluator:
     def assess(self, genome: Genome) -> Assessed:
         """The results of a genome, with its postures."""
         values = self.problem.space.values(genome)
-        return self._with_judgement(genome, self.assess_values(values))
+        return self._with_judgement(genome, self._assessed(values, self._solver.solve(values)))
 
     def assess_with_gradients(self, genome: Genome) -> Assessed:
         """The same with gradients, and what they took."""

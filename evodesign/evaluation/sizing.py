@@ -17,7 +17,7 @@ from dataclasses import replace
 from typing import Protocol
 
 from evodesign.design.space import TYPICAL, DesignSpace
-from evodesign.hardware.sizing import TOLERANCE, Sizing, sized, sizes_met
+from evodesign.hardware.sizing import TOLERANCE, Sizing, SizingRounds, sizes_met
 from evodesign.posture.results import CaseSolution
 from evodesign.quantities.demand import Demand, SizedRobot, demand_of
 from evodesign.quantities.design_result import DesignResult
@@ -35,13 +35,13 @@ NOTHING_KNOWN: Mapping[str, float] = {}
 Cases = tuple[CaseSolution, ...]
 
 
-class SizingRounds(Protocol):
+class PostureRounds(Protocol):
     """What is asked of a design's postures, round after round; values have rated torques for margins."""
 
     def sketched(self, values: Sequence[float]) -> Cases:
         """Postures of every case from one start each, not checked; none where they tell too little."""
 
-    def first(self, values: Sequence[float]) -> Cases:
+    def cases(self, values: Sequence[float]) -> Cases:
         """Postures of every case, not checked."""
 
     def following(self, values: Sequence[float], before: Cases) -> Cases:
@@ -71,7 +71,7 @@ def sized_result(
     space: DesignSpace,
     values: Sequence[float],
     robot: SizedRobot,
-    rounds: SizingRounds,
+    rounds: PostureRounds,
     usual: Mapping[str, float] = NOTHING_KNOWN,
 ) -> DesignResult:
     """The results of a design with sized actuators.
@@ -84,52 +84,39 @@ def sized_result(
         usual: what another design asks of each group [N m], for the first round.
     """
     groups = {space.parameters[place].name: place for place in space.margins}
-    asked: list[Demand | str] = []
-    cases: list[Cases] = []
-
-    def given(sizes: Mapping[str, float]) -> list[float]:
-        places = {place: sizes[name] for name, place in groups.items()}
-        return [places.get(place, value) for place, value in enumerate(values)]
-
-    def demand(sizes: Mapping[str, float]) -> Mapping[str, float] | None:
-        now = given(sizes)
-        cases.append(rounds.following(now, cases[-1]) if cases else rounds.first(now))
-        before = asked[-1] if asked else None
-        found = demand_of(space, now, robot, cases[-1], before if isinstance(before, Demand) else None)
-        asked.append(found)
-        return None if isinstance(found, str) else found.at(sizes)
-
-    def predict(sizes: Mapping[str, float]) -> Mapping[str, float]:
-        latest = asked[-1]
-        return latest.at(sizes) if isinstance(latest, Demand) else sizes
-
     margins = {name: values[place] for name, place in groups.items()}
     bounds = dict.fromkeys(groups, BOUNDS)
     first = usual_values(space, values, usual)
     start: Mapping[str, float] = {name: first[place] for name, place in groups.items()}
     sketch = rounds.sketched(first)
-    told = demand_of(space, first, robot, sketch) if sketch else ""
-    if isinstance(told, Demand):
-        start = sizes_met(told.at, start, margins, bounds)
+    demand = demand_of(space, first, robot, sketch) if sketch else ""
+    if isinstance(demand, Demand):
+        start = sizes_met(demand.at, start, margins, bounds)
+    cases: Cases = ()
+    latest: Demand | None = None
     for _ in range(BEGINNINGS):
-        sizing = sized(demand, start, margins, bounds, predict)
-        ended, latest = given(sizing.sizes), asked[-1]
-        if sizing.status is not Status.SOLVED and all(each.solved for each in cases[-1]):
-            reason = latest if isinstance(latest, str) else sizing.reason
-            return rounds.result(ended, _failed(cases[-1], sizing, reason))
-        result = rounds.result(ended, cases[-1])
-        if not all(each.solved for each in result.cases):
+        sizes = SizingRounds(start, margins, bounds)
+        while True:
+            places = {place: sizes.sizes[name] for name, place in groups.items()}
+            given = [places.get(place, value) for place, value in enumerate(values)]
+            cases = rounds.following(given, cases) if cases else rounds.cases(given)
+            demand = demand_of(space, given, robot, cases, latest)
+            latest = demand if isinstance(demand, Demand) else None
+            sizing = sizes.told(latest.at(sizes.sizes), latest.at) if latest else sizes.told(None)
+            if sizing is not None:
+                break
+        if sizing.status is not Status.SOLVED and all(each.solved for each in cases):
+            reason = demand if isinstance(demand, str) else sizing.reason
+            return rounds.result(given, _failed(cases, sizing, reason))
+        result = rounds.result(given, cases)
+        if latest is None or not all(each.solved for each in result.cases):
             return result
-        final = latest.of_lift(result.cases) if isinstance(latest, Demand) else None
-        if final is None:
-            break
-        wanted = _wanted(final, sizing, margins)
-        if replace(sizing, wanted=wanted).change <= 2.0 * TOLERANCE:
-            return replace(result, demand=final)
-        start = wanted
-        cases.append(result.cases)
-        asked.append(final)
-    lost = replace(sizing, status=Status.ITERATION_LIMIT)
+        cases, latest = result.cases, latest.of_lift(result.cases)
+        start = _wanted(latest, sizing, margins)
+        last = replace(sizing, wanted=start)
+        if last.change <= 2.0 * TOLERANCE:
+            return replace(result, demand=latest)
+    lost = replace(last, status=Status.ITERATION_LIMIT)
     return replace(result, cases=_failed(result.cases, lost, "checked postures ask for other actuators"))
 
 

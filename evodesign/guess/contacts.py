@@ -33,7 +33,7 @@ from evodesign.guess.body_plan import BodyPlan
 from evodesign.guess.limbs import Limb
 from evodesign.mechanics.agent import SIDES
 from evodesign.problem.agent_tables import Facing
-from evodesign.tree.mesh_write import vertices_of
+from evodesign.tree.mesh_write import in_frame, vertices_of
 from evodesign.tree.welded import WeldedBody, WeldedTree
 
 SLAB = 0.02
@@ -207,7 +207,7 @@ def _alike(points: Mapping[str, Sequence[float]]) -> dict[str, Vector]:
 
 def _new_frame(welded: WeldedTree, limb: Limb, name: str, at: Vector, axes: Matrix) -> GuessedContact:
     """A frame at a point of the root's frame, with axes there, fixed to the heaviest link of a limb's end."""
-    link = max(limb.end.links, key=lambda each: float(welded.tree.link_by_name[each].inertia.mass))
+    link = welded.heaviest(limb.end)
     while name in welded.tree.link_by_name:
         name += "_"
     return GuessedContact(name, link, welded.places[link].inverse @ Placement(axes, at))
@@ -228,15 +228,10 @@ def _points(welded: WeldedTree, body: WeldedBody) -> np.ndarray:
         shapes = [(solid.shape, solid.link_from_solid) for solid in link.solids]
         shapes += [(look.shape, look.link_from_look) for look in link.looks]
         if link.shown:
-            found += [_placed(vertices_of(mesh), place) for mesh in link.shown]
+            found += [in_frame(vertices_of(mesh), place) for mesh in link.shown]
         else:
-            found += [_placed(_outline(shape), place @ at) for shape, at in shapes]
+            found += [in_frame(_outline(shape), place @ at) for shape, at in shapes]
     return np.vstack(found)
-
-
-def _placed(points: np.ndarray, place: Placement) -> np.ndarray:
-    moved: np.ndarray = points @ np.array(place.rotation).T + np.array(place.translation)
-    return moved
 
 
 def _outline(shape: Shape) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Which links of a humanoid a design makes longer, the load that suits it, and how high it may hold it."""
+"""Which links of a humanoid a design makes longer and how far, and the load that suits it, with heights."""
 
 from __future__ import annotations
 
@@ -6,15 +6,19 @@ import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
-from evodesign.body.placement import Vector, add, dot, scale
+from evodesign.body.placement import Placement, Vector, add, dot, scale
+from evodesign.collision.clearance import PlacedSolids, Places, SolidBodies, places_of
 from evodesign.errors import ModelError
 from evodesign.guess.body_plan import BodyPlan
 from evodesign.guess.limbs import Limb
 from evodesign.mechanics.agent import SIDES
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.payload import WRIST_MOMENT
-from evodesign.tree.resize import growth_of
+from evodesign.tree.frames import link_frames
+from evodesign.tree.model import JointKind, Tree
+from evodesign.tree.resize import growth_of, resize
 from evodesign.tree.welded import WeldedBody, WeldedTree
 
 SHORTEST = 0.03
@@ -81,18 +85,12 @@ def _segment(welded: WeldedTree, limbs: Mapping[str, Limb], name: str, *, beyond
             return Group(name, (), 0.0, f"no segment of at least {SHORTEST * 100:g} cm")
         body, after = limb.bodies[longest], limb.bodies[longest + 1 :]
         joint = after[0].joint if after else None
-        link = _link_of(
-            welded, body, _heaviest(welded, body) if joint is None else joint.parent, ends[longest]
-        )
+        link = _link_of(welded, body, welded.heaviest(body) if joint is None else joint.parent, ends[longest])
         if link is None:
             return Group(name, (), 0.0, f"no link of '{body.name}' grows towards the next joint")
         links.append(link)
         lengths.append(spans[longest])
     return Group(name, tuple(links), sum(lengths) / len(lengths))
-
-
-def _heaviest(welded: WeldedTree, body: WeldedBody) -> str:
-    return max(body.links, key=lambda name: float(welded.tree.link_by_name[name].inertia.mass))
 
 
 def _link_of(welded: WeldedTree, body: WeldedBody, last: str, end: Vector) -> str | None:
@@ -163,7 +161,7 @@ def load_guess(plan: BodyPlan, ground: float) -> LoadGuess:
     shoulders = _beginnings(arms)
     hips = plan.legs["left"].bodies[0].origin[2] - ground
     top = shoulders[0][2] - ground
-    arm = _way([body.origin for body in arms["left"].bodies])
+    arm = sum(math.dist(a.origin, b.origin) for a, b in itertools.pairwise(arms["left"].bodies))
     width = min(max(_rounded(1.4 * math.dist(*shoulders), 0.05), 0.2), 0.6)
     depth = 0.4 if arm > 0.5 else 0.25
     mass = sum(float(body.inertia.mass) for body in plan.welded.bodies.values())
@@ -178,9 +176,72 @@ def _beginnings(limbs: Mapping[str, Limb]) -> tuple[Vector, Vector]:
     return next((pair for pair in pairs if math.dist(*pair) > apart), pairs[-1])
 
 
-def _way(points: Sequence[Vector]) -> float:
-    return sum(math.dist(one, other) for one, other in itertools.pairwise(points))
-
-
 def _rounded(value: float, step: float) -> float:
     return round(round(value / step) * step, 6)
+
+
+LOWER, UPPER, STEP = 0.6, 1.6, 0.05
+"""Bounds of length multipliers where nothing is in the way, and how finely others are found."""
+
+NEAR = (2, 3)
+"""Joints between two bodies that their build keeps clear of each other."""
+
+DEEPEST = 0.003
+"""Overlap of two bodies [m] that is a matter of their accuracy."""
+
+
+@dataclass(frozen=True, slots=True)
+class LengthBound:
+    """A bound of a multiplier, and the two bodies that would overlap beyond it; none if none would."""
+
+    multiplier: float
+    overlap: tuple[str, str] | None = None
+
+
+def length_bounds(tree: Tree, links: Sequence[str]) -> tuple[LengthBound, LengthBound]:
+    """The lower and the upper bound of a length multiplier: no body comes into another that was clear of it.
+
+        from 0.6 to 1.6, and nearer to 1 where in steps of 0.05 with all joints at zero two bodies overlap by
+        more than 3 mm that are clear of each other in the robot as it is
+
+    Counted are bodies with two or three joints between them: one joint joins its bodies, and what is farther
+    away, as a hand from a thigh, is kept clear by the posture.
+
+    Args:
+        tree: the robot, unscaled.
+        links: that share the multiplier; without any, or without shapes, both bounds are the farthest.
+    """
+    if not links or not SolidBodies.of_tree(tree).names:
+        return LengthBound(LOWER), LengthBound(UPPER)
+    clear = _clear(tree)
+    return _bound(tree, links, clear, LOWER, -STEP), _bound(tree, links, clear, UPPER, STEP)
+
+
+def _bound(tree: Tree, links: Sequence[str], clear: Places, farthest: float, step: float) -> LengthBound:
+    """The last multiplier on the way from 1 with which nothing overlaps."""
+    for number in range(1, round((farthest - 1.0) / step) + 1):
+        resized = resize(tree, dict.fromkeys(links, 1.0 + number * step), {})
+        if overlaps := _placed(resized).overlapping(clear, within=-DEEPEST):
+            deepest = min(overlaps, key=lambda gap: gap.distance)
+            return LengthBound(round(1.0 + (number - 1) * step, 2), (deepest.first, deepest.second))
+    return LengthBound(farthest)
+
+
+def _placed(tree: Tree) -> PlacedSolids:
+    """The solids of a tree with all joints at zero."""
+    return SolidBodies.of_tree(tree).placed(link_frames(tree, Placement(), {}))
+
+
+def _clear(tree: Tree) -> Places:
+    """Pairs of bodies that are near each other in the tree, and clear of each other."""
+    placed = _placed(tree)
+    names = tuple(dict.fromkeys(placed.names))
+    near = [pair for pair in combinations(names, 2) if _joints_between(tree, *pair) in NEAR]
+    touching = {(gap.first, gap.second) for gap in placed.overlapping(places_of(placed.names, near))}
+    return places_of(placed.names, [pair for pair in near if pair not in touching])
+
+
+def _joints_between(tree: Tree, first: str, second: str) -> int:
+    """Joints, fixed ones aside, on the way from one link to another."""
+    ways = [{link for link in tree.to_root(name) if link != tree.root} for name in (first, second)]
+    return sum(tree.parent_joint[link].kind is not JointKind.FIXED for link in ways[0] ^ ways[1])

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from evodesign.body.inertia import total
-from evodesign.body.placement import Placement, Vector, rotate
+from evodesign.body.placement import Vector, rotate
 from evodesign.collision.shapes import solids_of
 from evodesign.design.parameter import DesignParameter
 from evodesign.errors import InputError, listed
@@ -167,7 +167,7 @@ def _hands(robot: Agent, welded: WeldedTree) -> str:
 
 
 def _masses(robot: Agent) -> str:
-    mass = _mass(robot.tree)
+    mass = float(robot.tree.mass)
     if not LIGHTEST <= mass <= HEAVIEST:
         raise InputError("robot.urdf", "", f"a robot of {LIGHTEST:g} to {HEAVIEST:g} kg", f"{mass:.4g} kg")
     moving = [robot.tree.joint_by_name[name] for name in robot.joints]
@@ -186,10 +186,6 @@ def _shapes(tree: Tree) -> str:
     shaped = sum(bool(solids_of(link)) for link in heavy)
     without = "" if shaped else ": collisions and pictures leave the robot out"
     return f"{shaped} of {len(heavy)} links with a mass{without}"
-
-
-def _mass(tree: Tree) -> float:
-    return sum(float(link.inertia.mass) for link in tree.links)
 
 
 def _search(problem: DesignProblem) -> str:
@@ -214,10 +210,10 @@ def _changes(problem: DesignProblem, before: WeldedTree, index: int, value: floa
     robot, space = problem.scene.robot, problem.space
     values = [*space.unscaled(robot.tree)]
     values[index] = value
-    after = space.resized(robot.tree, space.given(values, {}))
-    mass = _mass(after) - _mass(before.tree)
+    after = WeldedTree(space.resized(robot.tree, space.given(values, {})))
+    mass = float(after.tree.mass) - float(before.tree.mass)
     moved = {
-        name: 1000.0 * math.dist(before.places[link].translation, _place(after, link).translation)
+        name: 1000.0 * math.dist(before.places[link].translation, after.places[link].translation)
         for name, link in (("hands", robot.hands[0].frame), ("soles", robot.feet[0].frame))
     }
     parts = [f"{name} by {distance:.0f} mm" for name, distance in moved.items() if distance >= 0.5]
@@ -225,12 +221,3 @@ def _changes(problem: DesignProblem, before: WeldedTree, index: int, value: floa
         wanted = "a parameter that changes a length or a mass"
         raise InputError(f"design ({space.parameters[index].name})", "", wanted, "neither")
     return ", ".join((*parts, f"{mass:+.2g} kg"))
-
-
-def _place(tree: Tree, link: str) -> Placement:
-    """Of a link in the root's frame."""
-    place = Placement()
-    while link != tree.root:
-        joint = tree.parent_joint[link]
-        place, link = joint.parent_from_child @ place, joint.parent
-    return place

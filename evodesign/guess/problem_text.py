@@ -11,11 +11,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from evodesign.guess.body_plan import BodyPlan, body_plan
-from evodesign.guess.bounds import LengthBound, length_bounds
 from evodesign.guess.contacts import Contacts, GuessedContact, contacts, frame_xyz_rpy
 from evodesign.guess.hardware_text import hardware_text
 from evodesign.guess.heights import held_heights
-from evodesign.guess.parameters import Group, LoadGuess, groups, load_guess
+from evodesign.guess.parameters import Group, LengthBound, LoadGuess, groups, length_bounds, load_guess
 from evodesign.mechanics.agent import SIDES
 from evodesign.problem.agent_tables import Facing
 from evodesign.problem.table import FILL_IN
@@ -141,11 +140,7 @@ def _inline(names: dict[str, str]) -> str:
 
 def _trunk_frames(plan: BodyPlan) -> list[str]:
     """The links with mass that hips and shoulders are joined to."""
-    ends = (plan.trunk[0], plan.trunk[-1])
-    links = plan.welded.tree.link_by_name
-    return [
-        *dict.fromkeys(max(body.links, key=lambda name: float(links[name].inertia.mass)) for body in ends)
-    ]
+    return [*dict.fromkeys(map(plan.welded.heaviest, (plan.trunk[0], plan.trunk[-1])))]
 
 
 def _frame(contact: GuessedContact) -> Sequence[str]:

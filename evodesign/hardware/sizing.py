@@ -66,46 +66,59 @@ class Sizing:
         return _change(self.sizes, self.wanted)
 
 
-def sized(
-    demand: Callable[[Sizes], Sizes | None],
-    start: Sizes,
-    margins: Sizes,
-    bounds: Mapping[str, tuple[float, float]],
-    predict: Callable[[Sizes], Sizes] | None = None,
-    rounds: int = ROUNDS,
-    tolerance: float = TOLERANCE,
-) -> Sizing:
-    """The sizes that are their margins times the demand on them.
+class SizingRounds:
+    """Asks for the demand on sizes until they are their margins times the demand.
 
     Args:
-        demand: what is asked of each size, in its unit, given all sizes; None where it cannot be told.
         start: sizes of the first round.
         margins: how many times the demand each size is.
         bounds: smallest and largest size that there is; a demand beyond them is met by neither.
-        predict: what the demand would be at other sizes than those it was asked for last, cheaply; left out,
-            it would be the same.
         rounds: largest number of times that the demand is asked for.
         tolerance: largest change of a size, as a share of it, that ends the rounds.
+    Attributes:
+        sizes: for which the demand is to be told next.
     """
-    sizes: Sizes = dict(start)
-    met_before: list[tuple[Array, Array]] = []
-    wanted = sizes
-    for number in range(1, rounds + 1):
-        asked = demand(sizes)
-        if asked is None:
-            reason = f"the demand on the actuators is not known after {number} rounds of sizing"
-            return Sizing(Status.INFEASIBLE, reason, sizes, wanted, number)
-        wanted = {name: _inside(margins[name] * asked[name], bounds[name]) for name in sizes}
-        if _change(sizes, wanted) <= tolerance:
-            return Sizing(Status.SOLVED, "solved", sizes, wanted, number)
-        if number < rounds:
-            met = wanted if predict is None else sizes_met(predict, wanted, margins, bounds)
-            met_before.append((np.log([*sizes.values()]), np.log([met[name] for name in sizes])))
-            following = zip(sizes, np.exp(_mixed(met_before)).tolist(), strict=True)
-            sizes = {name: _inside(size, bounds[name]) for name, size in following}
-    change = _change(sizes, wanted)
-    reason = f"actuators still change by {change:.1e} of their size after {rounds} rounds"
-    return Sizing(Status.ITERATION_LIMIT, reason, sizes, wanted, rounds)
+
+    def __init__(
+        self,
+        start: Sizes,
+        margins: Sizes,
+        bounds: Mapping[str, tuple[float, float]],
+        rounds: int = ROUNDS,
+        tolerance: float = TOLERANCE,
+    ) -> None:
+        self.sizes, self._margins, self._bounds = dict(start), margins, bounds
+        self._rounds, self._tolerance = rounds, tolerance
+        self._wanted, self._round = self.sizes, 0
+        self._met: list[tuple[Array, Array]] = []
+
+    def told(self, demand: Sizes | None, predict: Callable[[Sizes], Sizes] | None = None) -> Sizing | None:
+        """How the rounds end with a demand; None if it is to be told for other sizes.
+
+        Args:
+            demand: what is asked of each size, in its unit; None where it cannot be told.
+            predict: what the demand would be at other sizes, cheaply; left out, it would be the same.
+        """
+        self._round += 1
+        sizes = self.sizes
+        if demand is None:
+            reason = f"the demand on the actuators is not known after {self._round} rounds of sizing"
+            return self._ended(Status.INFEASIBLE, reason)
+        wanted = {n: _inside(self._margins[n] * demand[n], self._bounds[n]) for n in sizes}
+        self._wanted, change = wanted, _change(sizes, wanted)
+        if change <= self._tolerance:
+            return self._ended(Status.SOLVED, "solved")
+        if self._round == self._rounds:
+            reason = f"actuators still change by {change:.1e} of their size after {self._rounds} rounds"
+            return self._ended(Status.ITERATION_LIMIT, reason)
+        met = wanted if predict is None else sizes_met(predict, wanted, self._margins, self._bounds)
+        self._met.append((np.log([*sizes.values()]), np.log([met[name] for name in sizes])))
+        following = zip(sizes, np.exp(_mixed(self._met)).tolist(), strict=True)
+        self.sizes = {name: _inside(size, self._bounds[name]) for name, size in following}
+        return None
+
+    def _ended(self, status: Status, reason: str) -> Sizing:
+        return Sizing(status, reason, self.sizes, self._wanted, self._round)
 
 
 def sizes_met(

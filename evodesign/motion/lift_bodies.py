@@ -19,8 +19,8 @@ from evodesign.motion.lift_program import LiftProgram, LiftStart
 from evodesign.nlp.method import Ending
 from evodesign.nlp.solver import status_of
 from evodesign.posture.parting import Meetings
-from evodesign.posture.seeking import settling
 from evodesign.posture.seeking.budget import BUDGET
+from evodesign.posture.seeking.settling import UNSETTLED, Switched
 from evodesign.posture.terms.collisions import NUMBERS
 from evodesign.records import Lift, Status
 
@@ -48,10 +48,8 @@ class LiftSolve:
         return status_of(self.ending.word) is Status.SOLVED
 
 
-class PartedLift:
+class PartedLift(Switched[LiftSolve, LiftStart]):
     """Solves of one lift of one design that go on until no bodies overlap that rows can part.
-
-    They are solves of a program with rows that can be switched on (`posture.seeking.settling.Switched`).
 
     Args:
         program: with the lift's knots.
@@ -68,8 +66,7 @@ class PartedLift:
         """A solve with the rows on that it violates; as it is where it violates none."""
         if self._program.parted is None:
             return first
-        found = settling.parted(self, first)
-        return settling.bettered(self, found, BUDGET.part_lifts_better)
+        return self.bettered(self.parted(first), BUDGET.part_lifts_better)
 
     def is_solved(self, solve: LiftSolve, /) -> bool:
         """Whether there is a motion."""
@@ -83,21 +80,26 @@ class PartedLift:
         """Whether rows are on."""
         return solve.start.parts_bodies
 
-    began_with_rows = has_rows
+    def began_with_rows(self, solve: LiftSolve, /) -> bool:
+        """Likewise: a start keeps the rows that are on."""
+        return solve.start.parts_bodies
 
-    def violated(self, solve: LiftSolve, /) -> LiftSolve | None:
-        """The solve that goes on with bodies parted that overlap; None where none do that can be parted."""
+    def violated(self, solve: LiftSolve, /) -> LiftStart | None:
+        """A start that parts bodies that overlap; None where none do that can be parted."""
         on = self._changed(solve.start, solve.ending.symbols, Meetings.violated)
-        on = self._off_planes(solve) if on is None else on
-        return None if on is None else self._solved_from(solve, solve.ending.symbols, on)
+        return self._off_planes(solve) if on is None else on
+
+    def further(self, solve: LiftSolve, rows: LiftStart, /, *, near: bool = False) -> LiftSolve:
+        """The solve that goes on with the rows of a start, wherever it ends."""
+        return self._solved_from(solve, solve.ending.symbols, rows)
 
     def anew(self, first: LiftSolve, _: LiftSolve, /) -> LiftSolve:
         """The solve that begins where the first one began, with all bodies parted."""
         on = self._changed(first.start, first.start.symbols, Meetings.begun)
         return self._solved_from(first, first.start.symbols, first.start if on is None else on)
 
-    def better(self, solve: LiftSolve, least: float, /) -> LiftSolve | None:
-        """The solve that goes on with pairs parted along better directions; None where they gain little."""
+    def better(self, solve: LiftSolve, least: float, /) -> LiftStart | None:
+        """A start that parts pairs along better directions; None where they gain little."""
         multipliers, gains = iter(self._parted.rows_at(solve.ending.rows)), list[float]()
 
         def better(meetings: Meetings, at: Sequence[Array], held: Array) -> Chosen:
@@ -106,13 +108,11 @@ class PartedLift:
             return found
 
         on = self._changed(solve.start, solve.ending.symbols, better)
-        if on is None or sum(gains) <= least:
-            return None
-        return self._solved_from(solve, solve.ending.symbols, on)
+        return None if sum(gains) <= least else on
 
     def unsettled(self, solve: LiftSolve, /) -> LiftSolve:
         """A solve as one that failed."""
-        return replace(solve, ending=replace(solve.ending, word=settling.UNSETTLED))
+        return replace(solve, ending=replace(solve.ending, word=UNSETTLED))
 
     def _off_planes(self, solve: LiftSolve) -> LiftStart | None:
         """A start with the rows of planes; None where it has them already, or no plane is crossed."""

@@ -26,6 +26,7 @@ from evodesign.nlp.repeated import RepeatedProgram
 from evodesign.posture.assemble import Slot
 from evodesign.posture.parting import ALMOST, Meetings
 from evodesign.posture.results import AgentPosture
+from evodesign.posture.seeking.budget import BUDGET
 from evodesign.records import Lift
 from evodesign.tasks.lift import LoadProfile
 
@@ -149,7 +150,14 @@ class LiftProgram:
         return self.parted if start.parts_bodies and self.parted is not None else self
 
     def solve(
-        self, lift: Lift, start: LiftStart, design: Sequence[float], mass: float, inertia: float = 1.0
+        self,
+        lift: Lift,
+        start: LiftStart,
+        design: Sequence[float],
+        mass: float,
+        inertia: float = 1.0,
+        *,
+        briefly: bool = False,
     ) -> tuple[Ending, float]:
         """Solve from a start; gives its end and the wall time [s].
 
@@ -159,11 +167,13 @@ class LiftProgram:
             design: one number per parameter.
             mass: of the load [kg].
             inertia: share of it that counts; 0 for a motion that is infinitely slow.
+            briefly: whether a solve that takes long is given up.
         """
         shared = self._shared(design, lift, mass, inertia, start.hands)
         (low, high), program = self._bounds(lift), self._with_rows_of(start)
         own = program._own(start)
-        return program._program.solve(np.clip(start.symbols, low, high), (low, high), shared, own)
+        begun, options = np.clip(start.symbols, low, high), BUDGET.briefly(self._options)
+        return program._program.solve(begun, (low, high), shared, own, options if briefly else None)
 
     def exact(
         self, lift: Lift, start: LiftStart, ending: Ending, design: Sequence[float], mass: float

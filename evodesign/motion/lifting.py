@@ -122,10 +122,7 @@ class LiftProblem:
         program, mass = self._program(lift.knots), self._scene.payload.mass
         ends, disturbed = [hold.postures for hold in holds], [hold.disturbed for hold in holds]
         starts = lift_starts(program, lift, ends, design, (*known, {}), disturbed)
-        solves = {
-            name: LiftSolve(start, *program.solve(lift, start, design, mass))
-            for name, start in starts.items()
-        }
+        solves = _ends(program, lift, starts, design, mass)
         parted = _without_overlaps(PartedLift(program, lift, design, mass), solves)
         attempts = tuple(
             _attempt(name, each.ending, each.seconds, program.method) for name, each in parted.items()
@@ -312,6 +309,25 @@ def _options(setting: Setting) -> SolverOptions:
 
 def _cheapest(solves: Sequence[LiftSolve]) -> LiftSolve:
     return min(solves, key=lambda each: each.ending.cost)
+
+
+def _ends(
+    program: LiftProgram, lift: Lift, starts: Mapping[str, LiftStart], design: Sequence[float], mass: float
+) -> dict[str, LiftSolve]:
+    """Where starts lead to; solves that take long are given up unless all of them do."""
+
+    def solved(start: LiftStart, *, briefly: bool) -> LiftSolve:
+        return LiftSolve(start, *program.solve(lift, start, design, mass, briefly=briefly))
+
+    briefly = {name: solved(start, briefly=True) for name, start in starts.items()}
+    if any(each.solved for each in briefly.values()):
+        return briefly
+    return {
+        name: solved(each.start, briefly=False)
+        if status_of(each.ending.word) is Status.ITERATION_LIMIT
+        else each
+        for name, each in briefly.items()
+    }
 
 
 def _without_overlaps(parting: PartedLift, solves: Mapping[str, LiftSolve]) -> dict[str, LiftSolve]:

@@ -35,19 +35,25 @@ class Ipopt:
         """Solve from a start, in the program's own units."""
         if options not in self._solvers:
             self._solvers[options] = ca.nlpsol(self._name, "ipopt", self._oracle, casadi_options(options))
-        solver = self._solvers[options]
-        (lower, upper), (least, most) = self._bounds, self._limits
-        result = solver(x0=start, p=parameters, lbx=lower, ubx=upper, lbg=least, ubg=most)
-        stats = solver.stats()
-        return Ending(
-            symbols=np.asarray(result["x"]).ravel(),
-            cost=float(result["f"]),
-            word=str(stats["return_status"]),
-            iterations=int(stats["iter_count"]),
-            bounds=np.asarray(result["lam_x"]).ravel(),
-            rows=np.asarray(result["lam_g"]).ravel(),
-            cost_slope=-np.asarray(result["lam_p"]).ravel(),
-        )
+        return ending_of(self._solvers[options], start, parameters, self._bounds, self._limits)
+
+
+def ending_of(
+    solver: Any, start: Array, parameters: Array, bounds: tuple[Array, Array], limits: tuple[Array, Array]
+) -> Ending:
+    """Where CasADi's `nlpsol` leads from a start; bounds are of variables, limits of rows."""
+    (lower, upper), (least, most) = bounds, limits
+    result = solver(x0=start, p=parameters, lbx=lower, ubx=upper, lbg=least, ubg=most)
+    stats = solver.stats()
+    return Ending(
+        symbols=np.asarray(result["x"]).ravel(),
+        cost=float(result["f"]),
+        word=str(stats["return_status"]),
+        iterations=int(stats["iter_count"]),
+        bounds=np.asarray(result["lam_x"]).ravel(),
+        rows=np.asarray(result["lam_g"]).ravel(),
+        cost_slope=-np.asarray(result["lam_p"]).ravel(),
+    )
 
 
 def casadi_options(options: SolverOptions) -> dict[str, Any]:

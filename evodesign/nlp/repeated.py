@@ -15,7 +15,7 @@ import scipy
 from evodesign.nlp.blocks import Block, Repeated, stacked_limits
 from evodesign.nlp.codegen import compiled_function
 from evodesign.nlp.compiler import NotCompiled
-from evodesign.nlp.ipopt import casadi_options
+from evodesign.nlp.ipopt import casadi_options, ending_of
 from evodesign.nlp.method import Ending, MethodName, SolverOptions
 from evodesign.nlp.native.block_code import NativeMaker, native_maker
 from evodesign.nlp.optimality import NotDifferentiable
@@ -76,15 +76,11 @@ class RepeatedProgram:
         began, options = time.perf_counter(), options or self._options
         parameters = np.concatenate([shared, *[np.ravel(each) for each in own]])
         if self._native is not None:
-            symbols, found = self._native.solve(options, start, bounds, parameters)
-            cost, word, iterations, rows = found.cost, found.word, found.iterations, found.rows
+            found = self._native.solve(options, start, bounds, parameters)
         else:
-            result, stats = self._by_ipopt(options, start, bounds, parameters)
-            symbols, rows = (np.asarray(result[name]).ravel() for name in ("x", "lam_g"))
-            cost, word = float(result["f"]), str(stats["return_status"])
-            iterations = int(stats["iter_count"])
-        by_x, by_shared = self._slopes(symbols, shared, own, rows)
-        return Ending(symbols, cost, word, iterations, -by_x, rows, by_shared), time.perf_counter() - began
+            found = ending_of(self._ipopt(options), start, parameters, bounds, self._limits)
+        by_x, by_shared = self._slopes(found.symbols, shared, own, found.rows)
+        return replace(found, bounds=-by_x, cost_slope=by_shared), time.perf_counter() - began
 
     def exact(
         self, ending: Ending, bounds: tuple[Array, Array], shared: Array, own: Sequence[Array]
@@ -161,14 +157,6 @@ class RepeatedProgram:
             return None
         maker = native_maker(self._parts, seldom=self._options.seldom)
         return None if isinstance(maker, NotCompiled) else maker
-
-    def _by_ipopt(
-        self, options: SolverOptions, start: Array, bounds: tuple[Array, Array], parameters: Array
-    ) -> tuple[Any, Mapping[str, Any]]:
-        (low, high), (least, most) = bounds, self._limits
-        solver = self._ipopt(options)
-        result = solver(x0=start, p=parameters, lbx=low, ubx=high, lbg=least, ubg=most)
-        return result, solver.stats()
 
     @cached_property
     def functions(self) -> Mapping[str, Any]:

@@ -132,15 +132,14 @@ class Solver:
 
     def solve(self, parameters: Mapping[str, Any], start: Mapping[str, Array]) -> RawSolution:
         """Solve for parameters, by name, from a start (variables left out begin at the program's own)."""
-        if self._is_parted(start):
-            return self._parted_alike.solve(parameters, start)
-        began = time.perf_counter()
-        ending = self._method.solve(
-            self.options, self.program.packed(start), self.program.packed_parameters(parameters, start)
+        chosen = self.parted if self._is_parted(start) else self
+        method, program, began = chosen._method, chosen.program, time.perf_counter()
+        ending = method.solve(
+            self.options, program.packed(start), program.packed_parameters(parameters, start)
         )
         return RawSolution(
             start=start,
-            values={**self.program.unpacked(ending.symbols), **self.program.held(start)},
+            values={**program.unpacked(ending.symbols), **program.held(start)},
             status=status_of(ending.word),
             reason=ending.word,
             iterations=ending.iterations,
@@ -148,7 +147,7 @@ class Solver:
             cost=ending.cost,
             cost_slope=ending.cost_slope,
             multipliers=Multipliers(ending.bounds, ending.rows),
-            method=self._method.name,
+            method=method.name,
         )
 
     @cached_property
@@ -158,11 +157,6 @@ class Solver:
             return self._origin.parted
         switches = self.program.switches
         return self if switches is None else Solver(switches.program, self.options)
-
-    @property
-    def _parted_alike(self) -> Solver:
-        """With all rows, and the options of these solves."""
-        return self.parted.with_options(self.options)
 
     def _is_parted(self, start: Start) -> bool:
         switches = self.program.switches

@@ -50,17 +50,14 @@ class JoblibPool(Pool):
     def close(self) -> None:
         """End the workers, also those at work."""
         self._end_run()
-        self._close_processes()
+        processes, self._processes = self._processes, []
+        for process in processes:
+            process.close()
 
     def _end_run(self) -> None:
         unfinished = self._current() if self._current is not None else None
         if unfinished is not None:
             unfinished.close()
-
-    def _close_processes(self) -> None:
-        processes, self._processes = self._processes, []
-        for process in processes:
-            process.close()
 
 
 def _ends(group: WorkerGroup[A, R], arguments: Iterable[A]) -> Generator[Finished[R], None, None]:

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from enum import StrEnum
+from functools import partial
 
 import numpy as np
 
@@ -94,9 +95,9 @@ class PostureProblem:
             starts: of this design alone, for the same case.
         """
         trials: list[Trial] = []
-        for trial in self._trials(design, task, checker, neighbour, others, starts):
-            trials.append(trial)
-            if trial.best is not None:
+        for tried in self._ways(design, task, checker, neighbour, trials, others, starts):
+            trials.append(tried())
+            if trials[-1].best is not None:
                 break
         return self._finished(design, task, checker, trials)
 
@@ -121,8 +122,8 @@ class PostureProblem:
         Where the problem asks for polish, `polished` says whether this posture needs it: one that another
         round of sizing goes on from does not.
         """
-        trials = [next(self._trials(design, task, checker, neighbour))]
-        return self._ended(design, task, checker, trials, polished=polished)
+        tried = next(self._ways(design, task, checker, neighbour, []))
+        return self._ended(design, task, checker, [tried()], polished=polished)
 
     def improved(
         self,
@@ -166,7 +167,7 @@ class PostureProblem:
         best, found = trials[-1].best, [*trials]
         if self._symmetry is Symmetry.POLISH and best is not None:
             whole = self._formulation(WHOLE, task, self._methods(WHOLE)[0])
-            found.append(whole.polish(design, task, best.instants, checker))
+            found.append(whole.solve(design, task, [whole.start_at(best.instants, "polish")], checker))
         return case_solution(self._setting.scene.case(task), found)
 
     def followed(self, design: Sequence[float], solution: CaseSolution) -> CaseSolution | None:
@@ -221,16 +222,17 @@ class PostureProblem:
             cleared=lambda design, raw: formulation.cleared(design, raw, task, checker_of(design)),
         )
 
-    def _trials(
+    def _ways(
         self,
         design: Sequence[float],
         task: Task,
         checker: Checker,
         neighbour: Neighbour | None,
+        trials: Sequence[Trial],
         others: Sequence[Neighbour] = (),
         starts: Sequence[Start] = (),
-    ) -> Iterator[Trial]:
-        """What each formulation leads to, in turn: from its portfolio, and then from what else is known.
+    ) -> Iterator[Callable[[], Trial]]:
+        """What each formulation tries, in turn: from its portfolio, and then from what else is known.
 
         A neighbour's solution counts among those of other tasks where starts were learned in this very case.
         Where all starts ended at postures that violate the constraints no more than any near them, no other
@@ -243,20 +245,23 @@ class PostureProblem:
         for name, portfolio in self._in_turn(task):
             for method in self._methods(name):
                 formulation = self._formulation(name, task, method)
+                solved = partial(formulation.solve, design, task, checker=checker)
                 if neighbour is not None:
                     if not neighbour.unchecked:
-                        yield formulation.solve_beside(design, task, portfolio, neighbour, checker)
+                        begun = formulation.start_at(neighbour.solution.instants)
+                        yield partial(solved, [begun, *formulation.starts(task, portfolio)])
                     elif (raw := _raw_of(neighbour.solution, name)) is not None:
-                        yield formulation.finished(design, task, raw, checker)
-                trial = self._from_portfolio(formulation, design, task, portfolio, checker)
-                yield trial
+                        yield partial(formulation.finished, design, task, raw, checker)
+                yield partial(self._from_portfolio, formulation, design, task, portfolio, checker)
+                trial = trials[-1]
                 if trial.overlaps:
                     break
                 if portfolio and method is self._methods(name)[0]:
                     for other in others:
-                        yield formulation.solve_beside(design, task, (), other, checker)
+                        begun = formulation.start_at(other.solution.instants)
+                        yield partial(solved, [begun, *formulation.starts(task)])
                     if starts:
-                        yield formulation.solve(design, task, starts, checker)
+                        yield partial(solved, formulation.starts(task, starts), people=True)
                 if all(each.status is Status.INFEASIBLE for each in trial.attempts):
                     break
 
@@ -276,12 +281,15 @@ class PostureProblem:
         key, of = (formulation, task, bool(portfolio)), (tuple(design), type(checker))
         found = self._latest.get(key)
         if found is None or found[0] != of:
-            trial = formulation.solve(design, task, portfolio, checker)
+            given = formulation.starts(task, portfolio)
+            trial = formulation.solve(design, task, given, checker, people=bool(portfolio))
             beside, rest = self._known.other_starts(self._setting.scene.pair, task)
             if portfolio and beside and trial.is_doubtful:
-                trial = trial.beside(formulation.solve(design, task, beside, checker))
+                given = formulation.starts(task, beside)
+                trial = trial.beside(formulation.solve(design, task, given, checker, people=True))
             if portfolio and rest and trial.best is None:
-                trial = trial.beside(formulation.solve(design, task, rest, checker))
+                given = formulation.starts(task, rest)
+                trial = trial.beside(formulation.solve(design, task, given, checker, people=True))
             found = of, trial
             self._latest[key] = found
         return found[1]

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import msgspec
 
 from evodesign.design.space import DesignSpace
-from evodesign.errors import InputError, nearest_name
+from evodesign.errors import InputError
 from evodesign.mechanics.scene import Scene, scene_of
 from evodesign.mechanics.stance_case import StanceCase
 from evodesign.nlp.method import MethodName, SolverOptions
@@ -19,32 +19,25 @@ from evodesign.pool.base import Limits
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.codesign import JointSettings
 from evodesign.posture.postures import Symmetry
-from evodesign.problem.agents import (
-    human_agents,
-    robot_agents,
-)
+from evodesign.problem.agents import human_agents, robot_agents
 from evodesign.problem.collisions import with_collisions
 from evodesign.problem.constraints import constraints_of, refuse_constraints, with_what_can_be_built
-from evodesign.problem.descriptors import LOWEST_REACH, search_descriptors
 from evodesign.problem.design_geometry import joint_ranges_of
-from evodesign.problem.design_space import (
-    check_allocations,
-    effort_weights,
-    refuse_choices,
-    robot_share,
-)
+from evodesign.problem.design_space import check_allocations, effort_weights, refuse_choices, robot_share
 from evodesign.problem.designs import read_designs, start_genomes, unscaled_genome
 from evodesign.problem.file import ProblemFile, SearchTable
 from evodesign.problem.from_tables import (
+    LOWEST_REACH,
     ground_of,
     objectives_of,
+    pushes_of,
+    search_descriptors,
     space_of,
     tasks_of,
     worker_limits,
 )
 from evodesign.problem.joint_settings import joint_settings, joint_start
 from evodesign.problem.loads import held_by, payloads, refuse_stiff_arms, scene_disturbances
-from evodesign.problem.push_settings import pushes_of
 from evodesign.problem.samples import samples_of
 from evodesign.problem.source import decode_toml
 from evodesign.problem.stance_limits import stance_of
@@ -52,6 +45,7 @@ from evodesign.problem.standing_cases import standing_cases
 from evodesign.problem.symmetric import resolved_symmetry
 from evodesign.problem.teams import refuse_what_teams_lack, teams_of
 from evodesign.problem.torque_limits import refuse_unlimited
+from evodesign.problem.unknown_names import refuse_unlisted
 from evodesign.quantities.objectives import SHARED_REACH
 from evodesign.quantities.push_quantities import PushSettings
 from evodesign.records import (
@@ -236,10 +230,8 @@ class DesignProblem:
         given = self.search.reference
         signs = {each.name: -1.0 if each.sense is Sense.MAXIMISE else 1.0 for each in self.objectives}
         for name in given:
-            if name not in signs:
-                found = f"'{name}'{nearest_name(name, signs)}"
-                wanted = f"one of the objectives {', '.join(signs)}"
-                raise InputError(self.source.path, f"search.reference.{name}", wanted, found)
+            wanted = f"one of the objectives {', '.join(signs)}"
+            refuse_unlisted(self.source.path, f"search.reference.{name}", name, signs, wanted)
         if not given:
             return msgspec.UNSET
         return tuple(sign * given[name] if name in given else None for name, sign in signs.items())

@@ -13,11 +13,12 @@ from evodesign.collision.pairs import built_in_pairs, checked_pairs, exempt_pair
 from evodesign.collision.rules import LOAD, PLANES, BodyPair, CollisionRules
 from evodesign.design.space import DesignSpace
 from evodesign.design.spread import spread_designs
-from evodesign.errors import InputError, nearest_name
+from evodesign.errors import InputError
 from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.scene import Scene
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.task_tables import CollisionsTable
+from evodesign.problem.unknown_names import refuse_unlisted
 from evodesign.records import ProblemSource
 from evodesign.tree.model import Tree
 
@@ -123,13 +124,9 @@ def _refuse_unknown(table: CollisionsTable, source: ProblemSource, agents: list[
         for number, pair in enumerate(pairs):
             where = f"collisions.{key}[{number}]"
             for place, name in enumerate(pair):
-                others = {LOAD, *PLANES} if place else set()
-                if name not in links | others:
-                    wanted = "a link of the robot or of a person" + (
-                        ", load, floor or partner" if place else ""
-                    )
-                    hint = nearest_name(name, [*links, *others])
-                    raise InputError(source.path, where, wanted, f"'{name}'{hint}")
+                others, more = ({LOAD, *PLANES}, ", load, floor or partner") if place else (set(), "")
+                wanted = f"a link of the robot or of a person{more}"
+                refuse_unlisted(source.path, where, name, [*links, *others], wanted)
             if not any(_has(agent, pair) for agent in agents):
                 wanted = "two links of one agent"
                 raise InputError(source.path, where, wanted, f"'{pair[0]}' and '{pair[1]}'")

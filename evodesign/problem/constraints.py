@@ -17,12 +17,7 @@ from evodesign.problem.file import BoundsTable, ProblemFile
 from evodesign.problem.torque_limits import PEAK_TORQUE, refuse_unlimited_peak
 from evodesign.problem.unanswered_quantities import refuse_unanswered_quantity
 from evodesign.quantities.design_result import ObjectiveKind
-from evodesign.quantities.objectives import (
-    OTHERWISE_CALLED,
-    QUANTITIES,
-    objective_kind,
-    objective_kinds,
-)
+from evodesign.quantities.objectives import OTHERWISE_CALLED, QUANTITIES, objective_kind, objective_kinds
 from evodesign.records import Constraint, ProblemSource
 from evodesign.violations import BODIES_APART, PARTS_APART
 

@@ -16,7 +16,7 @@ from itertools import pairwise
 from evodesign.body.material import Material
 from evodesign.design.parameter import DesignParameter, ParameterKind
 from evodesign.design.walls import Wall
-from evodesign.errors import InputError, nearest_name, offered
+from evodesign.errors import InputError
 from evodesign.hardware.actuators import (
     Actuator,
     PowerLaw,
@@ -33,7 +33,12 @@ from evodesign.problem.design_space import known_materials
 from evodesign.problem.design_table import ActuatorTable, WallTable
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.mountings import mountings_of
-from evodesign.problem.unknown_names import refuse_unknown
+from evodesign.problem.unknown_names import (
+    of_catalogue,
+    refuse_unfit_choices,
+    refuse_unknown,
+    refuse_unlisted,
+)
 from evodesign.records import ProblemSource
 from evodesign.tree.model import Tree
 
@@ -177,15 +182,7 @@ def _models(
     friction: bool,
 ) -> tuple[Actuator, ...]:
     """Models by name, the weakest first."""
-    if len(names) < 2:
-        raise InputError(source.path, key, "at least two models", f"{len(names)}")
-    for position, name in enumerate(names):
-        where = f"{key}[{position}]"
-        if name not in known:
-            wanted = "a model of the catalogue or of an [[actuator]] table"
-            raise InputError(source.path, where, wanted, f"'{name}'{nearest_name(name, known)}")
-        if name in names[:position]:
-            raise InputError(source.path, where, "each model once", f"'{name}' twice")
+    refuse_unfit_choices(source, key, "model", names, known)
     rows = [known[name] for name in names]
     chosen = [
         replace(actuator_of_row(row), friction=_friction(row, key, source) if friction else None)
@@ -268,10 +265,8 @@ def _material(
                 wanted = f"a material, or a [[design.density]] of '{link}'"
                 raise InputError(source.path, f"{key}.material", wanted, "neither")
         return None
-    if table.material not in known:
-        names, found = offered(known, table.material)
-        wanted = f"a material of the catalogue or of a [[material]] table ({names})"
-        raise InputError(source.path, f"{key}.material", wanted, found)
+    wanted = of_catalogue("material", table.material, known)
+    refuse_unlisted(source.path, f"{key}.material", table.material, known, wanted)
     for link in table.links:
         if link in chosen:
             wanted = f"either a material or a [[design.density]] of '{link}'"

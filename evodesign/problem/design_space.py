@@ -13,12 +13,13 @@ from itertools import pairwise
 from evodesign.body.material import CATALOGUE, Material
 from evodesign.design.parameter import ALLOCATIONS, EFFORT_RATIO, ROBOT_SHARE, DesignParameter, ParameterKind
 from evodesign.design.space import DesignSpace
-from evodesign.errors import InputError, nearest_name, offered
+from evodesign.errors import InputError
 from evodesign.mechanics.load_share import share_interval
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.allocation import EffortWeights
 from evodesign.problem.design_table import AllocationTable, DensityTable
 from evodesign.problem.file import ProblemFile
+from evodesign.problem.unknown_names import refuse_unfit_choices, refuse_unlisted
 from evodesign.records import ProblemSource
 
 BOUNDS = ("lower_kg_per_m3", "upper_kg_per_m3")
@@ -73,16 +74,7 @@ def _chosen(
     names: Sequence[str], key: str, source: ProblemSource, known: Mapping[str, Material]
 ) -> tuple[Material, ...]:
     """Materials by name, the lightest first."""
-    if len(names) < 2:
-        raise InputError(source.path, key, "at least two materials", f"{len(names)}")
-    for position, name in enumerate(names):
-        where = f"{key}[{position}]"
-        if name not in known:
-            names, found = offered(known, name)
-            wanted = f"a material of the catalogue or of a [[material]] table ({names})"
-            raise InputError(source.path, where, wanted, found)
-        if name in names[:position]:
-            raise InputError(source.path, where, "each material once", f"'{name}' twice")
+    refuse_unfit_choices(source, key, "material", names, known)
     chosen = sorted((known[name] for name in names), key=lambda material: material.density)
     for one, other in pairwise(chosen):
         if one.density == other.density:
@@ -145,10 +137,7 @@ def check_allocations(tables: ProblemFile, source: ProblemSource) -> None:
     keys = {ROBOT_SHARE: "task.robot_share", EFFORT_RATIO: "task.effort_weights"}
     for position, table in enumerate(tables.design.allocation):
         key = f"design.allocation[{position}]"
-        if table.name not in ALLOCATIONS:
-            wanted = f"one of {', '.join(ALLOCATIONS)}"
-            found = f"'{table.name}'{nearest_name(table.name, ALLOCATIONS)}"
-            raise InputError(source.path, f"{key}.name", wanted, found)
+        refuse_unlisted(source.path, f"{key}.name", table.name, ALLOCATIONS)
         allocation = ALLOCATIONS[table.name]
         for bound, value in (("lower", table.lower), ("upper", table.upper)):
             if not allocation.means(value):

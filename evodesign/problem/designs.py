@@ -11,10 +11,11 @@ from msgspec import Meta
 
 from evodesign.design.parameter import ALLOCATIONS, DesignParameter, ParameterKind
 from evodesign.design.space import DesignSpace
-from evodesign.errors import InputError, nearest_name
+from evodesign.errors import InputError
 from evodesign.problem.design_space import refuse_no_choice
 from evodesign.problem.source import decode_toml
 from evodesign.problem.table import Name, Positive, Table
+from evodesign.problem.unknown_names import refuse_unlisted
 from evodesign.records import Genome, Parameter
 from evodesign.tree.model import Tree
 
@@ -91,10 +92,9 @@ def _given(entry: DesignEntry, source: str, key: str, space: DesignSpace) -> dic
         values: dict[str, float] = getattr(entry, table)
         for group, value in values.items():
             name = f"{kind}.{group}"
-            if name not in known:
-                groups = [other.split(".", 1)[1] for other in known if other.startswith(f"{kind}.")]
-                found = f"'{group}'{nearest_name(group, groups)}"
-                raise InputError(source, f"{key}.{table}", f"one of the problem's {kind} parameters", found)
+            groups = [other.split(".", 1)[1] for other in known if other.startswith(f"{kind}.")]
+            wanted = f"one of the problem's {kind} parameters"
+            refuse_unlisted(source, f"{key}.{table}", group, groups, wanted)
             if kind is ParameterKind.ALLOCATION and not ALLOCATIONS[group].means(value):
                 raise InputError(source, f"{key}.{table}.{group}", ALLOCATIONS[group].wanted, f"{value:g}")
             refuse_no_choice(known[name], value, source, f"{key}.{table}.{group}")
@@ -152,9 +152,7 @@ def _value_of(
     if parameter.name in given:
         raise InputError(source, key, f"either a {word} or a {figure}", "both")
     values = dict(zip(parameter.choice_names, parameter.choices, strict=True))
-    if choice not in values:
-        wanted = f"one of {', '.join(values)}"
-        raise InputError(source, key, wanted, f"'{choice}'{nearest_name(choice, values)}")
+    refuse_unlisted(source, key, choice, values)
     return values[choice]
 
 

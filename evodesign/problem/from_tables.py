@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
+import msgspec
+
+from evodesign.control.gains import Feedback
 from evodesign.design.parameter import DesignParameter, ParameterKind
 from evodesign.design.space import DesignSpace
 from evodesign.errors import InputError, offered
@@ -11,26 +14,15 @@ from evodesign.mechanics.contact import Ground
 from evodesign.mechanics.scene import Scene
 from evodesign.pool.base import Limits
 from evodesign.problem.design_geometry import joint_parameters, section_parameters
-from evodesign.problem.design_hardware import (
-    actuator_parameters,
-    wall_parameters,
-    walls_of,
-)
-from evodesign.problem.design_space import (
-    density_parameters,
-)
-from evodesign.problem.file import ProblemFile
+from evodesign.problem.design_hardware import actuator_parameters, wall_parameters, walls_of
+from evodesign.problem.design_space import density_parameters
+from evodesign.problem.file import DescriptorTable, ProblemFile
 from evodesign.problem.unanswered_quantities import refuse_unanswered_quantity
-from evodesign.problem.unknown_names import refuse_unknown
+from evodesign.problem.unknown_names import refuse_unknown, refuse_unlisted
 from evodesign.quantities.objectives import OTHERWISE_CALLED, objective_kind, objective_kinds
-from evodesign.records import (
-    Hold,
-    Lift,
-    Objective,
-    ProblemSource,
-    Sense,
-    Task,
-)
+from evodesign.quantities.push_quantities import SIMULATED, PushSettings
+from evodesign.records import SUM, Constraint, Descriptor, Hold, Lift, Objective, ProblemSource, Sense, Task
+from evodesign.simulation.pushable import refuse_unpushable
 from evodesign.tree.model import Tree
 
 GIGABYTE = 10**9
@@ -183,3 +175,71 @@ def objectives_of(
         refuse_unanswered_quantity(key, name, tables, source, people)
         objectives.append(Objective(name=name, sense=sense, unit=kind.unit))
     return tuple(objectives)
+
+
+def pushes_of(
+    tables: ProblemFile, source: ProblemSource, scenes: Sequence[Scene], asked: Iterable[str]
+) -> PushSettings | None:
+    """The settings of simulated pushes; None where nothing asks for them.
+
+    Args:
+        tables: the problem file.
+        source: the problem, for messages.
+        scenes: of the problem.
+        asked: names of objectives and of constrained quantities.
+    Raises:
+        InputError: a simulated quantity without `[push]`, or nobody whom controllers can keep upright.
+    """
+    name = next((each for each in asked if each in SIMULATED), None)
+    if name is None:
+        return None
+    if tables.push is None:
+        raise InputError(source.path, "push", f"a [push] for '{name}'", "none")
+    for scene in scenes:
+        refuse_unpushable(scene, source.path, "push")
+    feedback = Feedback(tables.push.frequency_rad_s, tables.push.damping_ratio)
+    return PushSettings(tables.push.impulse_n_s, feedback)
+
+
+LOWEST_REACH = "lowest_reach"
+REACHES = (LOWEST_REACH, "highest_reach")
+TORQUES = ("robot_torque", "human_torque")
+
+
+def search_descriptors(
+    tables: Sequence[DescriptorTable],
+    parameters: Sequence[DesignParameter],
+    quantities: Iterable[Objective | Constraint],
+    tasks: Iterable[str],
+    source: str,
+) -> tuple[Descriptor, ...] | msgspec.UnsetType:
+    """The descriptors of a search; sums of parameters have the sums of their bounds where none are given.
+
+    Args:
+        tables: of the file.
+        parameters: of the design.
+        quantities: objectives and constraints.
+        tasks: their names, with which torques have names.
+        source: the file, for messages.
+    Raises:
+        InputError: an unknown name, the same descriptor twice, or bounds that hold nothing.
+    """
+    bounds = {each.name: (each.lower, each.upper) for each in parameters}
+    torques = [f"{name}@{task}" for task in tasks for name in TORQUES]
+    known = [*bounds, *dict.fromkeys(each.name for each in quantities), *REACHES, *torques]
+    found: list[Descriptor] = []
+    for index, table in enumerate(tables):
+        key, names = f"search.descriptor[{index}]", table.name.split(SUM)
+        for name in names:
+            wanted = f"a sum such as 'a{SUM}b' of {', '.join(known)}"
+            refuse_unlisted(source, f"{key}.name", name, known, wanted)
+        if table.name in [each.name for each in found]:
+            raise InputError(source, f"{key}.name", "every descriptor once", f"'{table.name}' twice")
+        lower, upper = table.lower, table.upper
+        if all(name in bounds for name in names):
+            lower = sum(bounds[name][0] for name in names) if lower is None else lower
+            upper = sum(bounds[name][1] for name in names) if upper is None else upper
+        if lower is not None and upper is not None and lower >= upper:
+            raise InputError(source, f"{key}.upper", f"more than the lower bound {lower:g}", f"{upper:g}")
+        found.append(Descriptor(table.name, lower, upper, table.cells))
+    return tuple(found) or msgspec.UNSET

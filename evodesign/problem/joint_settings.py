@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from evodesign.design.parameter import ParameterKind
 from evodesign.design.space import DesignSpace
-from evodesign.errors import InputError, nearest_name
+from evodesign.errors import InputError
 from evodesign.nlp.method import SolverOptions
 from evodesign.posture.allocation import EffortWeights
 from evodesign.posture.formulations.codesign import JointSettings
@@ -14,6 +14,7 @@ from evodesign.posture.limit_groups import Enforced
 from evodesign.posture.postures import Symmetry
 from evodesign.posture.terms.paper_tasks import Tasks, TaskWeights
 from evodesign.problem.file import ProblemFile
+from evodesign.problem.unknown_names import refuse_unknown
 from evodesign.records import Genome, ProblemSource
 
 
@@ -74,8 +75,5 @@ def joint_start(
     if tables.search.start is None:
         raise InputError(source.path, "baseline.start", "search.start, the file that holds designs", "none")
     for position, name in enumerate(names):
-        if name not in known:
-            wanted = f"the name of a design of '{tables.search.start}'"
-            hint = nearest_name(name, known)
-            raise InputError(source.path, f"baseline.start[{position}]", wanted, f"'{name}'{hint}")
+        refuse_unknown(source, f"baseline.start[{position}]", "design", name, known, tables.search.start)
     return tuple(known[name] for name in names)

@@ -7,13 +7,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from evodesign.body.placement import Vector
-from evodesign.errors import InputError, nearest_name
+from evodesign.errors import InputError
 from evodesign.mechanics.agent import HUMAN, ROBOT, SIDES, TO_THE_LEFT, Agent
 from evodesign.mechanics.disturbance import Disturbance, Disturbances, PushedAt
 from evodesign.mechanics.elbow import elbow
 from evodesign.mechanics.payload import WRIST_MOMENT, Grasp, GraspDirection, Payload
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.task_tables import DisturbanceTable, PayloadTable
+from evodesign.problem.unknown_names import refuse_unlisted
 from evodesign.records import ProblemSource
 
 FROM_CORNERS = 0.25
@@ -174,9 +175,7 @@ def _refuse_unpushed(
     table: DisturbanceTable, agents: Sequence[Agent], key: str, source: ProblemSource
 ) -> None:
     names = [PushedAt.LOAD.value, *dict.fromkeys(agent.name for agent in agents)]
-    if table.at not in names:
-        found = f"'{table.at}'{nearest_name(table.at, names)}"
-        raise InputError(source.path, key, f"one of {', '.join(names)}", found)
+    refuse_unlisted(source.path, key, table.at, names)
     for agent in agents:
         if table.at == agent.name and not agent.trunk:
             wanted = f"a trunk to push: frames in {agent.name}.trunk"

@@ -9,21 +9,24 @@ a problem has the meshes of the problem.
 from __future__ import annotations
 
 import hashlib
+import math
 import os
 import re
 from collections import Counter
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
+from urllib.parse import unquote
+
+import numpy as np
 
 from evodesign.errors import InputError, ModelError
 from evodesign.problem.agent_tables import RobotTable
-from evodesign.problem.mesh_places import MeshPlaces
 from evodesign.problem.mesh_reading import few_triangles, read_mesh
-from evodesign.problem.mesh_upright import says_y_up, stood_upright
+from evodesign.tree.mesh_write import vertices_of
 from evodesign.tree.mjcf_read import TranslatedRobot
-from evodesign.tree.model import Mesh, Tree
-from evodesign.tree.surface import Surface, read_surface, surface_text
+from evodesign.tree.model import Link, Mesh, Tree
+from evodesign.tree.surface import Surface, read_surface, surface_of, surface_text
 from evodesign.tree.unit_doubts import mesh_doubts
 from evodesign.tree.urdf_read import InertiaRule, read_urdf
 
@@ -163,3 +166,121 @@ def with_meshes_beside(tree: Tree, file: Path, robot: TranslatedRobot) -> Tree:
     except InputError as error:
         return replace(tree, notes=(*tree.notes, str(error)))
     return with_surfaces(tree, texts, str(file))
+
+
+IN_PACKAGE = ("package", "model")
+"""Schemes whose first part is a package's name."""
+
+
+@dataclass(frozen=True, slots=True)
+class MeshPlaces:
+    """Where the mesh files lie that a URDF names.
+
+        NAME.stl, ../NAME.stl            from the URDF's folder
+        file:///PLACE/NAME.stl           there
+        package://PACKAGE/NAME.stl       in a package: a folder called PACKAGE, which is one of, or is in one
+        model://PACKAGE/NAME.stl         of, those of `[robot] packages`, ROS_PACKAGE_PATH, share in those of
+                                         AMENT_PREFIX_PATH, and the URDF's folder with all above it
+
+    The first file that is there is taken.
+
+    Args:
+        folder: of the URDF.
+        packages: further folders, from where the problem is.
+        environment: with ROS_PACKAGE_PATH and AMENT_PREFIX_PATH.
+    Source: wiki.ros.org/urdf/XML/link (mesh), REP 122 (layout of an installation).
+    """
+
+    folder: Path
+    packages: Sequence[Path]
+    environment: Mapping[str, str]
+
+    def find(self, name: str) -> Path | None:
+        """The file of a mesh by its name in the URDF; None where there is none."""
+        for path in self._candidates(name):
+            try:
+                if path.is_file():
+                    return path
+            except (OSError, ValueError):  # a name that is too long, or no name of a file
+                continue
+        return None
+
+    def searched(self, name: str) -> str:
+        """Where a mesh was looked for, in words."""
+        scheme, separator, _ = name.partition("://")
+        if not separator or scheme == "file":
+            return str(self.folder)
+        if scheme not in IN_PACKAGE:
+            return "no place, as it is no file"
+        given = [*self.packages, *self._in_environment()]
+        return ", ".join([*map(str, given), f"{self.folder} and above"])
+
+    def _candidates(self, name: str) -> Iterator[Path]:
+        scheme, separator, rest = name.partition("://")
+        if not separator:
+            yield self.folder / name
+        elif scheme == "file":
+            yield self.folder / unquote(rest)
+        elif scheme in IN_PACKAGE:
+            package, _, inside = rest.partition("/")
+            for place in (*self.packages, *self._in_environment(), self.folder, *self.folder.parents):
+                if place.name == package:
+                    yield place / inside
+                yield place / package / inside
+
+    def _in_environment(self) -> Iterator[Path]:
+        for variable, below in (("ROS_PACKAGE_PATH", ""), ("AMENT_PREFIX_PATH", "share")):
+            for place in self.environment.get(variable, "").split(os.pathsep):
+                if place:
+                    yield Path(place) / below
+
+
+HEAD = 100_000
+"""Bytes in which a file says what is up."""
+
+
+def says_y_up(path: Path) -> bool:
+    """Whether a mesh file says that y is up."""
+    if path.suffix.lower() != ".dae":
+        return False
+    with path.open("rb") as file:
+        return b"Y_UP" in file.read(HEAD)
+
+
+def stood_upright(tree: Tree, surfaces: Mapping[str, Surface], y_up: Collection[str]) -> dict[str, Surface]:
+    """The surfaces of a robot's meshes, turned as far as its files ask for it and its masses agree.
+
+    ROS and its viewers take coordinates as they stand, so that COLLADA's `<up_axis>` means nothing to most
+    robots. To some it does: their meshes lie beside their links unless they are turned, v' = (x, -z, y).
+    Which one holds for a robot is told by its centres of mass: those files are turned, all of them, if that
+    halves the distances from the middles of the meshes.
+
+    Args:
+        tree: of the robot's URDF, with the file's inertias.
+        surfaces: by the mesh's name in the URDF, in the coordinates of the files.
+        y_up: names of those whose files say that y is up.
+    Source: COLLADA 1.4.1, <up_axis>; pull request 24 of ros/robot_model and issue 1305 of gazebo-classic
+        (what programs make of it).
+    """
+    turned = {name: _turned(surfaces[name]) for name in y_up}
+    before, after = (sum(_distances(tree, found)) for found in ({n: surfaces[n] for n in y_up}, turned))
+    return {**surfaces, **turned} if after < before / 2.0 else dict(surfaces)
+
+
+def _turned(surface: Surface) -> Surface:
+    x, y, z = surface.vertices.T
+    return surface_of(np.stack([x, -z, y], axis=1), surface.faces, surface.volume)
+
+
+def _distances(tree: Tree, surfaces: Mapping[str, Surface]) -> Iterator[float]:
+    """From the centre of mass of each link to the middle of each of its meshes [m]."""
+    for link in tree.links:
+        for middle in _middles(link, surfaces) if link.inertia.mass > 0.0 else ():
+            yield math.dist(middle, link.inertia.center)
+
+
+def _middles(link: Link, surfaces: Mapping[str, Surface]) -> Iterator[list[float]]:
+    for mesh in link.meshes:
+        if mesh.file in surfaces:
+            vertices = vertices_of(replace(mesh, surface=surfaces[mesh.file]))
+            yield ((vertices.min(axis=0) + vertices.max(axis=0)) / 2.0).tolist()

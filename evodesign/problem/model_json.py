@@ -126,21 +126,18 @@ def _agent(agent: Agent) -> dict[str, Any]:
 
 def _parameter(parameter: DesignParameter, tree: Tree) -> dict[str, Any]:
     grows = parameter.kind is ParameterKind.LENGTH
+    joints = [*parameter.joints, *(change.joint for change in parameter.changes)]
     return {
         "name": parameter.name,
         "lower": parameter.lower,
         "upper": parameter.upper,
         "unit": parameter.record.unit,
         **({"materials": [each.name for each in parameter.materials]} if parameter.materials else {}),
-        **({"joints": joints} if (joints := _joints(parameter)) else {}),
+        **({"joints": joints} if joints else {}),
         **({"keep_mass": True} if parameter.keeps_mass else {}),
         **({"models": [each.model for each in parameter.models]} if parameter.models else {}),
         "links": [_link(tree.link_by_name[name], tree, grows=grows) for name in parameter.links],
     }
-
-
-def _joints(parameter: DesignParameter) -> list[str]:
-    return [*parameter.joints, *(change.joint for change in parameter.changes)]
 
 
 def _link(link: Link, tree: Tree, *, grows: bool) -> dict[str, Any]:

@@ -17,12 +17,13 @@ from dataclasses import dataclass, replace
 
 from evodesign.body.placement import Placement
 from evodesign.design.space import DesignSpace
-from evodesign.errors import InputError, ModelError, nearest_name
+from evodesign.errors import InputError, ModelError
 from evodesign.mechanics.agent import Agent
 from evodesign.mechanics.scene import Scene
 from evodesign.posture.postures import Symmetry
 from evodesign.posture.symmetry import half, symmetric_forms
 from evodesign.problem.file import ProblemFile
+from evodesign.problem.unknown_names import refuse_unlisted
 from evodesign.records import ProblemSource
 from evodesign.tree.averaging import averaged
 from evodesign.tree.frames import link_frames
@@ -56,9 +57,7 @@ def resolved_symmetry(
     """
     asked = tables.solver.symmetry if source.symmetry is None else source.symmetry
     place, key = (source.path, "solver.symmetry") if source.symmetry is None else ("--symmetry", "")
-    if asked not in set(Symmetry):
-        wanted = f"one of {', '.join(Symmetry)}"
-        raise InputError(place, key, wanted, f"'{asked}'{nearest_name(asked, Symmetry)}")
+    refuse_unlisted(place, key, asked, [*Symmetry])
     if asked == Symmetry.OFF:
         return Resolved(Symmetry.OFF, scenes)
     symmetric = Symmetry.POLISH if asked == Symmetry.POLISH else Symmetry.ON

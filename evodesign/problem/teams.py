@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import product
 
 from evodesign.errors import InputError
@@ -57,12 +57,12 @@ def refuse_what_teams_lack(tables: ProblemFile, source: ProblemSource, team: Seq
     robots = sum(len(table.sides) for table in tables.robots.values())
     people = len(team) - robots
     found = _who(robots, people)
-    for key in () if robots else _needing_robots(tables):
+    needing = _needing(tables)
+    for key in () if robots else (key for key in OF_ROBOTS if needing[key]):
         raise InputError(source.path, key, "a [robot] with it", found)
-    if not people:
-        for key in _needing_people(tables):
-            alone = "a robot that holds the load alone" if robots == 1 else found
-            raise InputError(source.path, key, "a [human] with it", alone)
+    for key in () if people else (key for key in needing if needing[key]):
+        alone = "a robot that holds the load alone" if robots == 1 else found
+        raise InputError(source.path, key, "a [human] with it", alone)
     for key, load in tables.loads.items():
         for name, given, role in (
             ("robot_grasps_m", load.robot_grasps_m, Role.ROBOT),
@@ -81,8 +81,13 @@ def refuse_what_teams_lack(tables: ProblemFile, source: ProblemSource, team: Seq
                 wanted = f"a point for each hand: {', '.join(hands) or 'none'}"
                 raise InputError(source.path, f"{key}.{name}", wanted, ", ".join(sides) or "none")
     if robots > 1 or people > 1:
-        for key in _needing_a_pair(tables):
-            raise InputError(source.path, key, "one robot and one person with it", found)
+        margins = {
+            f"design.actuator[{position}].margin": actuator.margin is not None
+            for position, actuator in enumerate(tables.design.actuator)
+        }
+        for key, asked in {**{key: needing[key] for key in OF_A_PAIR}, **margins}.items():
+            if asked:
+                raise InputError(source.path, key, "one robot and one person with it", found)
 
 
 def refuse_lift(scene: Scene, source: ProblemSource) -> None:
@@ -104,31 +109,19 @@ def _counted(number: int, one: str, several: str) -> str:
     return f"{number or 'no'} {one if number == 1 else several}"
 
 
-def _needing_robots(tables: ProblemFile) -> Iterator[str]:
-    if tables.task.robot_share is not None:
-        yield "task.robot_share"
-    if tables.task.lift:
-        yield "task.lift"
+OF_ROBOTS = ("task.robot_share", "task.lift")
+"""Keys that need a robot."""
+
+OF_A_PAIR = ("task.lift", "search.algorithm")
+"""Keys that need one robot and one person."""
 
 
-def _needing_people(tables: ProblemFile) -> Iterator[str]:
-    if tables.task.lift:
-        yield "task.lift"
-    if tables.search.algorithm == JOINT_STARTS:
-        yield "search.algorithm"
-    if tables.task.robot_share is not None:
-        yield "task.robot_share"
-    if tables.task.effort_weights is not None:
-        yield "task.effort_weights"
-    if tables.design.allocation:
-        yield "design.allocation"
-
-
-def _needing_a_pair(tables: ProblemFile) -> Iterator[str]:
-    if tables.task.lift:
-        yield "task.lift"
-    if tables.search.algorithm == JOINT_STARTS:
-        yield "search.algorithm"
-    for position, actuator in enumerate(tables.design.actuator):
-        if actuator.margin is not None:
-            yield f"design.actuator[{position}].margin"
+def _needing(tables: ProblemFile) -> dict[str, bool]:
+    """Whether a file asks for what needs people, by key."""
+    return {
+        "task.lift": bool(tables.task.lift),
+        "search.algorithm": tables.search.algorithm == JOINT_STARTS,
+        "task.robot_share": tables.task.robot_share is not None,
+        "task.effort_weights": tables.task.effort_weights is not None,
+        "design.allocation": bool(tables.design.allocation),
+    }

@@ -137,11 +137,6 @@ HUMAN_TORQUE = over_agents(people, norm, "N m", torque_norm, by_torque=_by_norm)
 """|tau|_2 of all joints of all people who hold the load together."""
 
 
-def reach_height(result: DesignResult) -> float | None:
-    """Highest load that the robot can hold [m]."""
-    return result.reach.highest
-
-
 def shared_reach_height(result: DesignResult) -> float | None:
     """Highest load that the robot and all of the people can hold [m]."""
     if result.reach.highest is None or result.people_highest is None:
@@ -162,16 +157,6 @@ def parts_apart(result: DesignResult) -> float | None:
     """How much room the parts have that have least, or minus what all lack [m]; None without such parts."""
     found = part_clearance(result.tree, result.scenes[0].designed_tree)
     return None if found is None else found.apart
-
-
-def mass(result: DesignResult) -> float:
-    """Mass of the robot [kg]."""
-    return float(result.tree.mass)
-
-
-def mass_of_actuators(result: DesignResult) -> float:
-    """Mass of the robot's actuators [kg]."""
-    return actuator_mass(result.tree)
 
 
 def torque_margin(result: DesignResult) -> float | None:
@@ -345,12 +330,12 @@ QUANTITIES: Mapping[str, CaseQuantity] = {
 REACH, SHARED_REACH = "reach_height", "shared_reach_height"
 
 WHOLE: Mapping[str, ObjectiveKind] = {
-    REACH: ObjectiveKind("m", reach_height),
+    REACH: ObjectiveKind("m", lambda result: result.reach.highest),
     SHARED_REACH: ObjectiveKind("m", shared_reach_height),
     BODIES_APART: ObjectiveKind("m", bodies_apart),
     PARTS_APART: ObjectiveKind("m", parts_apart),
-    "mass": ObjectiveKind("kg", mass),
-    "actuator_mass": ObjectiveKind("kg", mass_of_actuators),
+    "mass": ObjectiveKind("kg", lambda result: float(result.tree.mass)),
+    "actuator_mass": ObjectiveKind("kg", lambda result: actuator_mass(result.tree)),
     "cost": ObjectiveKind("EUR", lambda result: cost(result.tree)),
     ENDURANCE: ObjectiveKind("s", endurance_seconds),
     "torque_margin": ObjectiveKind("1", torque_margin),

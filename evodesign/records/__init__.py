@@ -20,6 +20,8 @@ from evodesign.records.evaluations import (
     Generation,
     Gradients,
     ReachOutcome,
+    SampledDesign,
+    SampledPeople,
     Turn,
     WeakestPush,
 )
@@ -33,7 +35,6 @@ from evodesign.records.parameters import (
     materials_of,
     middle_of,
 )
-from evodesign.records.people import SampledDesign, SampledPeople
 from evodesign.records.postures import (
     ActiveLimit,
     AgentDetail,

@@ -56,8 +56,9 @@ class Parameter(Record, frozen=True, omit_defaults=True):
             return self.choices[choice_at(coordinate, len(self.choices))]
         if self.logarithmic:
             value = float(self.lower * (self.upper / self.lower) ** coordinate)
-            return min(max(value, self.lower), self.upper)
-        return _between(self.lower, self.upper, coordinate)
+        else:
+            value = self.lower * (1.0 - coordinate) + self.upper * coordinate
+        return min(max(value, self.lower), self.upper)  # rounding takes it past neither
 
     def share_of(self, value: float) -> float:
         """How far a value lies between the bounds, on the parameter's scale."""
@@ -92,11 +93,6 @@ def design_of(parameters: tuple[Parameter, ...], genome: Genome) -> dict[str, fl
         parameter.name: parameter.value_at(coordinate)
         for parameter, coordinate in zip(parameters, genome, strict=True)
     }
-
-
-def _between(lower: float, upper: float, share: float) -> float:
-    """The number at a share of the way from lower to upper, never past them by rounding."""
-    return min(max(lower * (1.0 - share) + upper * share, lower), upper)
 
 
 def materials_of(parameters: tuple[Parameter, ...], design: Mapping[str, float]) -> dict[str, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from html import escape
 
@@ -55,7 +56,8 @@ def _figure(comparison: Comparison) -> go.Figure:
             *("Attained by half of the runs (thick), one, all (thin)" for _ in shown),
         ],
     )
-    styles = {name: _style(place) for place, name in enumerate(comparison.searches)}
+    looks = ({"color": colour, "dash": dash} for dash, colour in itertools.product(DASHES, COLOURS))
+    styles = dict(zip(comparison.searches, itertools.cycle(looks), strict=False))
     for name, members in comparison.searches.items():
         _add_curves(figure, name, members, styles[name])
         _add_ends(figure, name, members, styles[name])
@@ -64,8 +66,8 @@ def _figure(comparison: Comparison) -> go.Figure:
         for attainment in comparison.attainments:
             if attainment.objectives == pair:
                 _add_surfaces(figure, (row, column), attainment, styles[attainment.search])
-        figure.update_xaxes(title_text=_label(pair[0]), row=row, col=column)
-        figure.update_yaxes(title_text=_label(pair[1]), row=row, col=column)
+        figure.update_xaxes(title_text=axis_title(pair[0]), row=row, col=column)
+        figure.update_yaxes(title_text=axis_title(pair[1]), row=row, col=column)
     figure.update_xaxes(title_text="evaluations", row=1, col=1)
     left_out = f" ({len(pairs) - len(shown)} of {len(pairs)} pairs of objectives left out)"
     figure.update_layout(
@@ -82,10 +84,6 @@ def _figure(comparison: Comparison) -> go.Figure:
         legend={"orientation": "h", "x": 0.0, "y": 1.0 + 50 / (ROW_HEIGHT * rows), "yanchor": "bottom"},
     )
     return figure
-
-
-def _style(place: int) -> Mapping[str, str]:
-    return {"color": COLOURS[place % len(COLOURS)], "dash": DASHES[place // len(COLOURS) % len(DASHES)]}
 
 
 def _add_curves(figure: go.Figure, name: str, members: Sequence[Compared], style: Mapping[str, str]) -> None:
@@ -182,9 +180,6 @@ def _staircase(
     return xs, ys
 
 
-def _name(objective: Objective) -> str:
-    return escape(objective.name.replace("_", " "), quote=False)
-
-
-def _label(objective: Objective) -> str:
-    return f"{_name(objective)} [{objective.unit}]"
+def axis_title(objective: Objective) -> str:
+    """Its name and unit as HTML shows them."""
+    return f"{escape(objective.name.replace('_', ' '), quote=False)} [{objective.unit}]"

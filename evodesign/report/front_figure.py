@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from html import escape
 
 import numpy as np
 import plotly.graph_objects as go
@@ -10,6 +11,7 @@ import plotly.graph_objects as go
 from evodesign.analysis.front import front
 from evodesign.errors import InputError
 from evodesign.records import Evaluation, Objective, RunHeader, Sense
+from evodesign.report.comparison_figure import axis_title
 from evodesign.report.subset import subsample
 
 MOST_POINTS = 10_000
@@ -40,16 +42,18 @@ def front_html(header: RunHeader, evaluations: Sequence[Evaluation]) -> str:
     shown = subsample(others, MOST_POINTS)
     note = "" if len(shown) == len(others) else f" ({len(shown)} of {len(others)} shown)"
     figure = go.Figure()
-    figure.add_trace(_points(objectives, shown, f"dominated{note}", on_front=False))
-    figure.add_trace(_points(objectives, best, "front", on_front=True))
+    figure.add_trace(_points(objectives, shown, f"dominated{note}", {"size": 5, "color": "#c0c4c9"}))
+    figure.add_trace(_points(objectives, best, "front", _front_marker(objectives, best)))
     first = [e for e in evaluations[:1] if e.feasible and header.search.start]
     for evaluation in first:
-        figure.add_trace(_marked(objectives, evaluation))
+        star = {"size": 16, "symbol": "star", "color": "#c0392b", "line": {"width": 1, "color": "#333333"}}
+        figure.add_trace(_points(objectives, [evaluation], "first design of the run", star))
+    name = escape(header.problem_name, quote=False)
     figure.update_layout(
         template="plotly_white",
-        title=f"{_safe(header.problem_name)}: {len(best)} of {len(evaluations)} designs are on the front",
-        xaxis={"title": _label(objectives[0]), "range": _range(objectives[0], best, first)},
-        yaxis={"title": _label(objectives[1]), "range": _range(objectives[1], best, first)},
+        title=f"{name}: {len(best)} of {len(evaluations)} designs are on the front",
+        xaxis={"title": axis_title(objectives[0]), "range": _range(objectives[0], best, first)},
+        yaxis={"title": axis_title(objectives[1]), "range": _range(objectives[1], best, first)},
         legend={"orientation": "h", "y": 1.12, "x": 1.0, "xanchor": "right"},
         font={"size": 15},
     )
@@ -78,20 +82,27 @@ def _values(objective: Objective, evaluations: Sequence[Evaluation]) -> list[flo
     return [evaluation.assessment.objectives[objective.name] for evaluation in evaluations]
 
 
-def _points(
-    objectives: Sequence[Objective], evaluations: Sequence[Evaluation], name: str, *, on_front: bool
-) -> go.Scatter:
-    marker: dict[str, object] = {"size": 11 if on_front else 5, "color": "#1f4e79" if on_front else "#c0c4c9"}
-    if on_front and len(objectives) == 3:
-        low, high = _range(objectives[2], evaluations)
+def _front_marker(objectives: Sequence[Objective], best: Sequence[Evaluation]) -> dict[str, object]:
+    marker: dict[str, object] = {"size": 11, "color": "#1f4e79"}
+    if len(objectives) == 3:
+        low, high = _range(objectives[2], best)
         marker.update(
-            color=_values(objectives[2], evaluations),
+            color=_values(objectives[2], best),
             colorscale="Viridis",
             cmin=low,
             cmax=high,
-            colorbar={"title": {"text": _label(objectives[2]), "side": "right"}},
+            colorbar={"title": {"text": axis_title(objectives[2]), "side": "right"}},
             line={"width": 1, "color": "#333333"},
         )
+    return marker
+
+
+def _points(
+    objectives: Sequence[Objective],
+    evaluations: Sequence[Evaluation],
+    name: str,
+    marker: Mapping[str, object],
+) -> go.Scatter:
     return go.Scatter(
         x=_values(objectives[0], evaluations),
         y=_values(objectives[1], evaluations),
@@ -103,30 +114,11 @@ def _points(
     )
 
 
-def _marked(objectives: Sequence[Objective], evaluation: Evaluation) -> go.Scatter:
-    return go.Scatter(
-        x=_values(objectives[0], [evaluation]),
-        y=_values(objectives[1], [evaluation]),
-        text=[_hover(objectives, evaluation)],
-        hoverinfo="text",
-        mode="markers",
-        name="first design of the run",
-        marker={"size": 16, "symbol": "star", "color": "#c0392b", "line": {"width": 1, "color": "#333333"}},
-    )
-
-
-def _label(objective: Objective) -> str:
-    return f"{_safe(objective.name.replace('_', ' '))} [{objective.unit}]"
-
-
 def _hover(objectives: Sequence[Objective], evaluation: Evaluation) -> str:
     values = evaluation.assessment.objectives
     lines = [f"design {evaluation.number}"]
-    lines += [f"{_label(objective)}: {values[objective.name]:.4g}" for objective in objectives]
-    lines += [f"{_safe(name)}: {value:.4g}" for name, value in evaluation.assessment.design.items()]
+    lines += [f"{axis_title(objective)}: {values[objective.name]:.4g}" for objective in objectives]
+    lines += [
+        f"{escape(name, quote=False)}: {value:.4g}" for name, value in evaluation.assessment.design.items()
+    ]
     return "<br>".join(lines)
-
-
-def _safe(text: str) -> str:
-    """Text that a browser shows as it stands."""
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

@@ -247,11 +247,6 @@ class SceneSet:
             found[f"human{suffix}.urdf"] = person.label, tree
         return found
 
-    @property
-    def payloads(self) -> tuple[Payload, ...]:
-        """Each load once, in the problem's order."""
-        return tuple({models.payload.label: models.payload for models in self.models}.values())
-
     def models_of(self, detail: CaseDetail) -> SceneModels:
         """Who stands there in a logged case.
 

@@ -199,7 +199,8 @@ def failure_claim(robots: Mapping[str, RobotFigures], search: SearchFigures) -> 
 
 def search_claim(search: SearchFigures) -> Claim:
     """A search as cheap as its own finds a robot as good as its own."""
-    took = f"{search.evaluations} evaluations in {search.minutes:.1f} min with {_workers(search.jobs)}"
+    workers = f"{search.jobs} worker" + "s" * (search.jobs != 1)
+    took = f"{search.evaluations} evaluations in {search.minutes:.1f} min with {workers}"
     reason = "no design has as small a cost as GA"
     if search.reached is not None:
         reason = f"as good as GA by its fitness after {search.reached} evaluations"
@@ -216,7 +217,3 @@ def search_claim(search: SearchFigures) -> Claim:
         reproduced=search.reached is not None and search.evaluations <= EVALUATIONS,
         reason=reason,
     )
-
-
-def _workers(jobs: int) -> str:
-    return f"{jobs} worker" + "s" * (jobs != 1)

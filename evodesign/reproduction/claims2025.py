@@ -9,10 +9,11 @@ Its repository prints no torques of these robots; verdicts are on what its probl
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
-from evodesign.reproduction.claims2022 import Claim, TorqueNorms, TorqueNormsByHeight
+from evodesign.reproduction.claims2022 import Claim, TorqueNormsByHeight
 
 ICUB, REFERENCE = "iCub", "A"
 BEFORE, OPTIMISED = (REFERENCE, ICUB), ("B", "C")
@@ -44,29 +45,18 @@ class ErgonomicRobot:
 
 
 Robots = Mapping[str, ErgonomicRobot]
-Figure = Callable[[TorqueNorms], float | None]
-
-
-def robot_torque(norms: TorqueNorms) -> float:
-    """The robot's torque norm [N m]."""
-    return norms.robot
-
-
-def human_torque(norms: TorqueNorms) -> float:
-    """The person's torque norm [N m]."""
-    return norms.human
-
-
-def back_compression(norms: TorqueNorms) -> float | None:
-    """Compression of the person's L5/S1 [N]."""
-    return norms.back
+Figure = Literal["robot", "human", "back"]
+"""A field of `TorqueNorms`."""
 
 
 def change(before: TorqueNormsByHeight, after: TorqueNormsByHeight, figure: Figure) -> float | None:
     """By which share a figure's mean over the heights that both robots hold differs; None without any."""
-    pairs = [(figure(before[height]), figure(after[height])) for height in before if height in after]
-    first = sum(one for one, _ in pairs if one is not None)
-    return sum(other for _, other in pairs if other is not None) / first - 1.0 if first else None
+    shared = [height for height in before if height in after]
+    first, then = (
+        sum(value for height in shared if (value := getattr(norms[height], figure)) is not None)
+        for norms in (before, after)
+    )
+    return then / first - 1.0 if first else None
 
 
 def reach_claim(robots: Robots, heights: Sequence[float]) -> Claim:
@@ -90,16 +80,16 @@ def reach_claim(robots: Robots, heights: Sequence[float]) -> Claim:
 
 def human_claim(robots: Robots, person: str) -> Claim:
     """A person needs lower torques beside B and C than beside A, at the heights that they share."""
-    backs = _changes(robots, person, back_compression)[REFERENCE]
+    backs = _changes(robots, person, "back")[REFERENCE]
     return _fall_claim(
-        robots, person, "human torque", human_torque, f"compression of L5/S1 {_shares(backs)} against A"
+        robots, person, "human torque", "human", f"compression of L5/S1 {_shares(backs)} against A"
     )
 
 
 def robot_claim(robots: Robots, person: str) -> Claim:
     """B and C need lower torques themselves than A, at the heights that they share."""
     return _fall_claim(
-        robots, person, "robot torque", robot_torque, "in their cost it weighs a millionth of the person's"
+        robots, person, "robot torque", "robot", "in their cost it weighs a millionth of the person's"
     )
 
 
@@ -160,8 +150,8 @@ def front_claim(robots: Robots, dominating: Mapping[str, int], designs: int) -> 
         reproduced=designs > 0 and not any(dominating.values()),
         reason="the search has no feasible design"
         if ours is None
-        else f"robot torque of its shown robot {_shares(_against(ours, robots, robot_torque))} against B, C, "
-        f"human torque {_shares(_against(ours, robots, human_torque))}",
+        else f"robot torque of its shown robot {_shares(_against(ours, robots, 'robot'))} against B, C, "
+        f"human torque {_shares(_against(ours, robots, 'human'))}",
     )
 
 

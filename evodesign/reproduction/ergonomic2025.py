@@ -13,9 +13,12 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
+
+import msgspec
 
 from evodesign.design.parameter import ParameterKind
 from evodesign.errors import InputError
@@ -27,6 +30,7 @@ from evodesign.problem.source import read_source
 from evodesign.quantities.design_result import DesignResult
 from evodesign.quantities.objectives import objective_value
 from evodesign.records import Evaluation
+from evodesign.report.csv_text import csv_text
 from evodesign.reproduction.claims2022 import Claim
 from evodesign.reproduction.claims2025 import (
     BY_COST,
@@ -49,7 +53,7 @@ from evodesign.reproduction.experiment import (
     torque_norms,
     value_of,
 )
-from evodesign.reproduction.files2025 import ErgonomicReproduction
+from evodesign.reproduction.files2022 import ReproducedRobot, write_file, write_reproduction
 from evodesign.runlog.run import RunLog
 
 COST, HUMAN, ROBOT = "paper2025_cost", "human_torque", "robot_torque"
@@ -207,3 +211,80 @@ def _dominates(each: Evaluation, robot: DesignResult) -> bool:
         and value_of(HUMAN)(each) < human * (1.0 + LOWER)
         and value_of(REACH)(each) >= reach
     )
+
+
+TABLE = "robots.csv"
+COLUMNS = ("robot", "person", "height_m", "robot_torque_n_m", "human_torque_n_m", "back_compression_n")
+
+
+@dataclass(frozen=True, slots=True)
+class ErgonomicReproduction:
+    """Everything that is shown.
+
+    Args:
+        robots: the iCub, the published robots, then those of our searches, by name.
+        pictured: the same with their postures beside the paper's person.
+        designs: their parameters, by name.
+        runs: our searches, by the name of their robot.
+        chosen: number of that robot in its run; None where that has no feasible one.
+        claims: each with its verdict.
+    """
+
+    robots: Mapping[str, ErgonomicRobot]
+    pictured: tuple[ReproducedRobot, ...]
+    designs: Mapping[str, Mapping[str, float]]
+    runs: Mapping[str, RunLog]
+    chosen: Mapping[str, int | None]
+    claims: tuple[Claim, ...]
+
+
+def write_ergonomic(directory: Path, done: ErgonomicReproduction) -> tuple[Path, ...]:
+    """Write table, figures and robots into an existing directory.
+
+    Raises:
+        InputError: a file cannot be written.
+    """
+    rows = [
+        (name, person, height, norms.robot, norms.human, norms.back)
+        for name, robot in done.robots.items()
+        for person, by_height in robot.by_person.items()
+        for height, norms in by_height.items()
+    ]
+    table = write_file(directory / TABLE, csv_text([COLUMNS, *rows]))
+    return table, *write_reproduction(directory, done.pictured, ())
+
+
+def ergonomic_json(
+    done: ErgonomicReproduction, directory: Path, files: Iterable[Path], seconds: float
+) -> dict[str, Any]:
+    """A reproduction of 2025 as a JSON object; its shape is a promise. [N m], [N], [kg], [m]."""
+    return {
+        "directory": str(directory),
+        "robots": {
+            name: {
+                "mass": robot.mass,
+                "highest": robot.highest,
+                "cost": robot.cost,
+                "by_person": {
+                    person: [
+                        {"height_m": height, **msgspec.to_builtins(norms)} for height, norms in held.items()
+                    ]
+                    for person, held in robot.by_person.items()
+                },
+                "parameters": dict(done.designs[name]),
+            }
+            for name, robot in done.robots.items()
+        },
+        "claims": msgspec.to_builtins(list(done.claims)),
+        "searches": {
+            name: {
+                "run": str(run.directory),
+                "evaluation": done.chosen[name],
+                "evaluations": len(run.evaluations),
+                "infeasible": sum(not each.feasible for each in run.evaluations),
+            }
+            for name, run in done.runs.items()
+        },
+        "files": [str(path) for path in files],
+        "seconds": seconds,
+    }

@@ -37,6 +37,9 @@ RECORDS: Final[Mapping[str, type[msgspec.Struct]]] = {
 }
 """The record that each topic carries."""
 
+KNOWN_BY: Final = {EVALUATION: "number", GENERATION: "number", FRONT: "generation", DETAIL: "evaluation"}
+"""The field that tells a topic's records from each other."""
+
 AGENTS: Final = ("robot", "human")
 """Names of the agents, as fields of the schema."""
 
@@ -51,6 +54,12 @@ Names = Mapping[str, tuple[str, ...]]
 """Keys known beforehand of the maps in a record, by the name of the field that holds the map."""
 
 SCALARS = ("boolean", "integer", "number", "string")
+
+
+def known_as(record: msgspec.Struct) -> tuple[str, int]:
+    """The topic of a record that is no header, and its number there."""
+    topic = next(topic for topic in KNOWN_BY if isinstance(record, RECORDS[topic]))
+    return topic, getattr(record, KNOWN_BY[topic])
 
 
 def described(header: RunHeader) -> dict[str, bytes]:

@@ -137,7 +137,9 @@ def source_differences(first: ProblemSource, second: ProblemSource) -> list[str]
     if first.text != second.text:
         line = _first_difference(first.text, second.text)
         found.append(f"the problem file differs in line {line}")
-    return found + [f"the file of '{name}' differs" for name in _unequal(first.files, second.files)]
+    names = sorted({*first.files, *second.files})
+    unequal = (name for name in names if first.files.get(name) != second.files.get(name))
+    return found + [f"the file of '{name}' differs" for name in unequal]
 
 
 def version_differences(first: Mapping[str, str], second: Mapping[str, str]) -> list[str]:
@@ -157,10 +159,6 @@ def _first_difference(first: str, second: str) -> int:
         (number for number, (one, other) in enumerate(pairs, 1) if one != other),
         1 + min(len(lines), len(others)),
     )
-
-
-def _unequal(first: Mapping[str, str], second: Mapping[str, str]) -> list[str]:
-    return [name for name in sorted({*first, *second}) if first.get(name) != second.get(name)]
 
 
 def _short(value: object) -> str:

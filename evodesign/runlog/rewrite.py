@@ -19,8 +19,8 @@ from mcap.writer import CompressionType, Writer
 
 from evodesign.errors import InputError, RunError
 from evodesign.files import replacing
-from evodesign.records import Detail, Evaluation, Front, Generation, RunHeader, SearchSettings, SearchStage
-from evodesign.runlog.channels import DETAIL, EVALUATION, FRONT, GENERATION, RUN
+from evodesign.records import RunHeader, SearchSettings, SearchStage
+from evodesign.runlog.channels import RUN, known_as
 from evodesign.runlog.directory import locked, make_directory, run_segments, segment_path, synced
 from evodesign.runlog.gaps import record_gaps
 from evodesign.runlog.reader import Entry, entries
@@ -117,29 +117,13 @@ def _once(directory: Path, run: RunLog) -> Iterator[Entry]:
     paths = run_segments(directory).values()
     headers = [entry for path in paths for entry in entries(path) if entry.topic == RUN]
     yield from headers or [Entry(RUN, 0, 0, run.header)]
-    left: dict[str, dict[int, msgspec.Struct]] = {
-        EVALUATION: {evaluation.number: evaluation for evaluation in run.evaluations},
-        GENERATION: {generation.number: generation for generation in run.generations},
-        FRONT: {front.generation: front for front in run.fronts},
-        DETAIL: {detail.evaluation: detail for detail in run.details},
-    }
+    records = (*run.evaluations, *run.generations, *run.fronts, *run.details)
+    left = {known_as(record): record for record in records}
     for path in paths:
         for entry in entries(path):
-            if entry.topic != RUN and left[entry.topic].get(_number(entry.record)) == entry.record:
-                del left[entry.topic][_number(entry.record)]
+            if entry.topic != RUN and left.get(known := known_as(entry.record)) == entry.record:
+                del left[known]
                 yield entry
-
-
-def _number(record: msgspec.Struct) -> int:
-    """By what a record is known among those of its kind."""
-    match record:
-        case Evaluation() | Generation():
-            return record.number
-        case Front():
-            return record.generation
-        case Detail():
-            return record.evaluation
-    return -1
 
 
 def begin_branch(old: RunLog, directory: Path, generations: int, settings: SearchSettings) -> int:
@@ -177,15 +161,11 @@ def _beginning(old: RunLog, header: RunHeader, generations: int, count: int) -> 
     """The records of a branch's first generations, which were not written at the times of the old ones."""
     now = time.time_ns()
     yield Entry(RUN, 0, now, header)
-    for detail in old.details:
-        if detail.evaluation < count:
-            yield Entry(DETAIL, detail.evaluation, now, detail)
-    for evaluation in old.evaluations[:count]:
-        yield Entry(EVALUATION, evaluation.number, now, evaluation)
-    for generation in old.generations[:generations]:
-        yield Entry(GENERATION, generation.number, now, generation)
-    for front in old.fronts[:generations]:
-        yield Entry(FRONT, front.generation, now, front)
+    details = (detail for detail in old.details if detail.evaluation < count)
+    concluded = (*old.generations[:generations], *old.fronts[:generations])
+    for record in (*details, *old.evaluations[:count], *concluded):
+        topic, number = known_as(record)
+        yield Entry(topic, number, now, record)
 
 
 def _evaluations_of(old: RunLog, generations: int) -> int:

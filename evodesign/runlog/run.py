@@ -18,6 +18,7 @@ import msgspec
 
 from evodesign.errors import InputError, RunError
 from evodesign.records import NO_SECONDS, Detail, Evaluation, Front, Generation, RunHeader
+from evodesign.runlog.channels import known_as
 from evodesign.runlog.directory import run_segments, segments
 from evodesign.runlog.gaps import record_gaps, segment_gaps
 from evodesign.runlog.header import differences
@@ -103,11 +104,9 @@ def read_run(directory: Path) -> RunLog:
     strange: list[str] = []
     read = [_valid(segment, Validity(headers[-1]), strange) for segment in read]
     evaluations, contradictions = _by_number(read)
-    generations = _first_of_each(
-        (generation.number, generation) for segment in read for generation in segment.generations
-    )
-    fronts = _first_of_each((front.generation, front) for segment in read for front in segment.fronts)
-    details = _first_of_each((detail.evaluation, detail) for segment in read for detail in segment.details)
+    generations = _first_of_each(generation for segment in read for generation in segment.generations)
+    fronts = _first_of_each(front for segment in read for front in segment.fronts)
+    details = _first_of_each(detail for segment in read for detail in segment.details)
     sessions = [session for segment in read for session in segment.sessions]
     faults = (
         *(segment.note for segment in read if segment.damaged),
@@ -198,11 +197,11 @@ def _by_number(segments: list[Segment]) -> tuple[tuple[Evaluation, ...], list[st
     return tuple(kept[number] for number in sorted(kept)), notes
 
 
-def _first_of_each(numbered: Iterable[tuple[int, R]]) -> tuple[R, ...]:
-    kept: dict[int, R] = {}
-    for number, record in numbered:
-        kept.setdefault(number, record)
-    return tuple(kept[number] for number in sorted(kept))
+def _first_of_each(records: Iterable[R]) -> tuple[R, ...]:
+    kept: dict[tuple[str, int], R] = {}
+    for record in records:
+        kept.setdefault(known_as(record), record)
+    return tuple(kept[known] for known in sorted(kept))
 
 
 def digest(evaluations: Iterable[Evaluation]) -> str:

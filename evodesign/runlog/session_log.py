@@ -27,22 +27,19 @@ class SessionLog:
     Args:
         run: what earlier sessions left.
         open_log: makes the writer of this session's segment.
+    Attributes:
+        evaluations: how many are known.
     """
 
     def __init__(self, run: RunLog, open_log: Callable[[], RunWriter]) -> None:
         self._directory = run.directory
         self._evaluations = {evaluation.number: evaluation for evaluation in run.evaluations}
-        self._count = len(self._evaluations)
+        self.evaluations = len(self._evaluations)
         self._generations = {generation.number for generation in run.generations}
         self._fronts = {front.generation for front in run.fronts}
         self._open_log = open_log
         self._opened: RunWriter | None = None
         self._committed = time.monotonic()
-
-    @property
-    def evaluations(self) -> int:
-        """How many evaluations are known."""
-        return self._count
 
     def turns(self) -> dict[int, Turn]:
         """The turns, by number of evaluation, of all that is known of an asynchronous run.
@@ -83,20 +80,20 @@ class SessionLog:
         With `more` to come at once, it may wait for them, so that they reach the disk together.
         """
         if detail is not None:
-            self._log().detail(detail)
-        self._log().evaluation(evaluation)
+            self._log().write(detail)
+        self._log().write(evaluation)
         if not more or time.monotonic() - self._committed > LONGEST_WAIT:
             self._log().commit()
             self._committed = time.monotonic()
-        self._count += 1
+        self.evaluations += 1
 
     def conclude(self, generation: Generation, front: Front) -> None:
         """Put the state and the front after a generation on the disk, each unless it is known."""
         if generation.number not in self._generations:
-            self._log().generation(generation)
+            self._log().write(generation)
             self._generations.add(generation.number)
         if front.generation not in self._fronts:
-            self._log().front(front)
+            self._log().write(front)
             self._fronts.add(front.generation)
         self._log().commit()
 

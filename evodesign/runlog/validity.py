@@ -83,8 +83,8 @@ class Validity:
                 fault = self._generation(record)
                 return fault and f"generation {record.number}: {fault}"
             case Front():
-                fault = _front(record)
-                return fault and f"the front of generation {record.generation}: {fault}"
+                if not _counts(record.generation, *record.evaluations):
+                    return f"the front of generation {record.generation}: it has numbers that are none"
             case Detail():
                 fault = _detail(record)
                 return fault and f"the postures of evaluation {record.evaluation}: {fault}"
@@ -114,10 +114,6 @@ class Validity:
         if not {*generation.best, *(generation.reference or ())} <= self._objectives:
             return "it has unknown objectives"
         return ""
-
-
-def _front(front: Front) -> str:
-    return "" if _counts(front.generation, *front.evaluations) else "it has numbers that are none"
 
 
 def _detail(detail: Detail) -> str:

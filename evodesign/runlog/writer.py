@@ -25,16 +25,13 @@ from evodesign.errors import RunError
 from evodesign.files import begun
 from evodesign.records import FORMAT_VERSION, Detail, Evaluation, Front, Generation, RunHeader
 from evodesign.runlog.channels import (
-    DETAIL,
-    EVALUATION,
-    FRONT,
-    GENERATION,
     HEADER_COPY,
     MESSAGE_ENCODING,
     RECORDS,
     RUN,
     SCHEMA_ENCODING,
     described,
+    known_as,
 )
 from evodesign.runlog.directory import make_directory, segment_path, segments, synced
 from evodesign.runlog.run import refuse_run
@@ -97,7 +94,7 @@ class RunWriter:
         self._mcap = Writer(self._file, compression=CompressionType.ZSTD, enable_data_crcs=True)
         self._mcap.start(profile="", library="evodesign")
         self._channels = register(self._mcap, self._header)
-        self._add(RUN, self._header, sequence=self._segment)
+        self._add(RUN, self._segment, self._header)
         add_header_copy(self._mcap, self._header, self._now())
         _to_disk(self._file)
 
@@ -112,25 +109,10 @@ class RunWriter:
         """The segment after those that a run has."""
         return cls(directory, header, 1 + max(segments(directory), default=-1))
 
-    def evaluation(self, evaluation: Evaluation) -> None:
-        """Append an evaluation."""
+    def write(self, record: Evaluation | Detail | Generation | Front) -> None:
+        """Append a record; postures go before their evaluation, so that it is never known without them."""
         with self._writing():
-            self._add(EVALUATION, evaluation, evaluation.number)
-
-    def detail(self, detail: Detail) -> None:
-        """Append the postures of an evaluation; they go before it, so that it is never known without them."""
-        with self._writing():
-            self._add(DETAIL, detail, detail.evaluation)
-
-    def generation(self, generation: Generation) -> None:
-        """Append the state after a generation."""
-        with self._writing():
-            self._add(GENERATION, generation, generation.number)
-
-    def front(self, front: Front) -> None:
-        """Append the front after a generation."""
-        with self._writing():
-            self._add(FRONT, front, front.generation)
+            self._add(*known_as(record), record)
 
     def commit(self) -> None:
         """Return when all that was appended is on the disk; the place where a long segment ends."""
@@ -162,7 +144,7 @@ class RunWriter:
     ) -> None:
         self.close()
 
-    def _add(self, topic: str, record: msgspec.Struct, sequence: int) -> None:
+    def _add(self, topic: str, sequence: int, record: msgspec.Struct) -> None:
         """A chunk with one message, handed to the operating system."""
         now, data = self._now(), encoded(record)
         if len(data) > LARGEST_RECORD:

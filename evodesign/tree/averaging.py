@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evodesign.body.inertia import total
-from evodesign.body.placement import Placement
+from evodesign.body.placement import Placement, vector
 from evodesign.body.shape import Solid
 from evodesign.errors import ModelError, listed
 from evodesign.tree.mirror_candidates import Unpaired
@@ -31,7 +31,7 @@ from evodesign.tree.mirror_images import ANGLE, MIRROR, Difference, Figure, Seen
 from evodesign.tree.mirror_light import half, paired
 from evodesign.tree.mirror_pairs import Pairs
 from evodesign.tree.model import Joint, JointKind, Link, Look, Tree
-from evodesign.tree.solid_pairs import matrix, mean_rotation, mean_solids, turned_by, vector
+from evodesign.tree.solid_pairs import matrix, mean_rotation, mean_solids, turned_by
 
 Array = NDArray[np.float64]
 
@@ -141,13 +141,9 @@ def _mean_tree(tree: Tree, pairs: Pairs) -> Tree:
     return replace(tree, links=tuple(links[link.name] for link in tree.links), joints=joints)
 
 
-def _partner(pairs: Pairs, name: str) -> Seen:
-    return pairs.seen[pairs.mirror.links[name]]
-
-
 def _mean_frame(pairs: Pairs, name: str) -> Placement:
     """The place of a link in the root's frame; a frame that is turned otherwise keeps its orientation."""
-    mine, its = pairs.seen[name], _partner(pairs, name)
+    mine, its = pairs.seen[name], pairs.seen[pairs.mirror.links[name]]
     if name in pairs.mirror.loose:
         return mine.frame
     place = (mine.place + MIRROR * its.place) / 2.0
@@ -174,7 +170,10 @@ def _mean_links(
     middle = link.name == other.name
     both = None
     if link.solids and other.solids:
-        mine, its = ([_moved(s, seen[each.name].frame) for s in each.solids] for each in (link, other))
+        mine, its = (
+            [replace(s, link_from_solid=seen[each.name].frame @ s.link_from_solid) for s in each.solids]
+            for each in (link, other)
+        )
         both = mean_solids(mine, its, middle=middle)
     if both is not None:
         one, image = (
@@ -184,10 +183,6 @@ def _mean_links(
         return one, image
     one, image = (_kept_inertia(each, its, seen, frames) for each, its in ((link, other), (other, link)))
     return one, image
-
-
-def _moved(solid: Solid, outer_from_link: Placement) -> Solid:
-    return replace(solid, link_from_solid=outer_from_link @ solid.link_from_solid)
 
 
 def _back(solids: list[Solid], link: Link, frames: Mapping[str, Placement]) -> tuple[Solid, ...]:

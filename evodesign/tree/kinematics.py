@@ -13,7 +13,7 @@ from typing import Any
 
 import casadi as ca
 
-from evodesign.body.placement import Placement, Vector
+from evodesign.body.placement import Vector
 from evodesign.tree.model import Joint, JointKind, Tree
 
 Expression = Any
@@ -90,14 +90,10 @@ def pose_from(tree: Tree, above: str, link: str, positions: Mapping[str, Express
 
 def _child_pose(parent: Pose, joint: Joint, position: Expression) -> Pose:
     origin = joint.parent_from_child
-    at_rest = parent.rotation @ _matrix(origin)
+    at_rest = parent.rotation @ ca.DM([*map(list, origin.rotation)])
     start = parent.point(vector(origin.translation))
     if joint.kind is JointKind.FIXED:
         return Pose(at_rest, start)
     if joint.kind is JointKind.PRISMATIC:
         return Pose(at_rest, start + at_rest @ (vector(joint.axis) * position))
     return Pose(at_rest @ axis_rotation(joint.axis, position), start)
-
-
-def _matrix(placement: Placement) -> Expression:
-    return ca.DM([list(row) for row in placement.rotation])

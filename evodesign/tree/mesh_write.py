@@ -19,6 +19,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from evodesign.body.placement import Placement
 from evodesign.tree.model import Link, Mesh, Tree
 
 MeshNames = Mapping[tuple[str, int], str]
@@ -85,6 +86,13 @@ def vertices_of(mesh: Mesh) -> Array:
     if mesh.surface is None:
         return np.zeros((0, 3))
     found: Array = mesh.surface.vertices @ _linear(mesh).T + np.array(mesh.link_from_mesh.translation, float)
+    return found
+
+
+def in_frame(points: Array, outer_from_inner: Placement) -> Array:
+    """Points of shape (n, 3) in an outer frame."""
+    turn, offset = np.array(outer_from_inner.rotation, float), np.array(outer_from_inner.translation, float)
+    found: Array = points @ turn.T + offset
     return found
 
 

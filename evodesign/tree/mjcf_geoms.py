@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from lxml import etree
 
-from evodesign.body.placement import Placement, Vector
+from evodesign.body.placement import Placement, vector
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.tree.mesh_write import stl
 from evodesign.tree.triangulation import capsule, ellipsoid
@@ -26,12 +26,6 @@ from evodesign.tree.urdf_write import add_mesh, add_shape
 
 SHOWN_GROUPS = 3
 """Groups below this are those that MuJoCo's viewer shows unless it is told otherwise."""
-
-
-def vector(numbers: Sequence[float]) -> Vector:
-    """Three numbers of a model."""
-    x, y, z = map(float, numbers)
-    return (x, y, z)
 
 
 def placement(position: Sequence[float], wxyz: Sequence[float]) -> Placement:

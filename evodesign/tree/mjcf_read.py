@@ -30,12 +30,12 @@ import numpy as np
 from lxml import etree
 
 from evodesign.body.inertia import Inertia
-from evodesign.body.placement import Placement, scale
+from evodesign.body.placement import Placement, scale, vector
 from evodesign.errors import ModelError, listed
 from evodesign.tree.frames import parent_from_child
 from evodesign.tree.mjcf_effort import effort_limit
 from evodesign.tree.mjcf_followers import FollowerRule, follower_rules
-from evodesign.tree.mjcf_geoms import add_geoms, placement, vector
+from evodesign.tree.mjcf_geoms import add_geoms, placement
 from evodesign.tree.mjcf_unread import Unread
 from evodesign.tree.model import Joint, JointKind
 from evodesign.tree.placeholder import placeholder
@@ -228,10 +228,8 @@ class _Translation:
             kind = JointKind.CONTINUOUS
         effort, axis = effort_limit(self.mujoco, model, number), vector(model.jnt_axis[number])
         at_ref = Joint(name, kind, parent, child, place, axis, lower, upper, effort)
-        return replace(at_ref, parent_from_child=parent_from_child(at_ref, -self._ref(number)))
-
-    def _ref(self, joint: int) -> float:
-        return float(self.model.qpos0[self.model.jnt_qposadr[joint]])
+        ref = float(model.qpos0[model.jnt_qposadr[number]])
+        return replace(at_ref, parent_from_child=parent_from_child(at_ref, -ref))
 
     def _add(self, robot: etree._Element, joint: Joint, coupled: Mapping[str, FollowerRule]) -> None:
         """A joint, and its child where that is no body's."""

@@ -17,16 +17,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from evodesign.body.inertia import Inertia
-from evodesign.body.placement import (
-    Matrix,
-    Scalar,
-    Vector,
-    dot,
-    perpendicular,
-    rotate,
-    scale,
-    transpose,
-)
+from evodesign.body.placement import Matrix, Scalar, Vector, dot, perpendicular, rotate, scale, transpose
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.errors import ModelError
 from evodesign.tree.model import Link, Tree

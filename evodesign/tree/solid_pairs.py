@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from evodesign.body.placement import Matrix, Placement, Vector
+from evodesign.body.placement import Matrix, Placement, vector
 from evodesign.body.shape import Box, Cylinder, Shape, Solid, Sphere
 from evodesign.tree.mirror_images import ANGLE, PLACE
 
@@ -141,11 +141,6 @@ def _mean(image: Solid, other: Solid) -> Solid:
     place = Placement(matrix(rotation), vector((_center(named) + _center(other)) / 2.0))
     mass = (float(image.mass) + float(other.mass)) / 2.0
     return Solid(shape, place, mass / float(shape.volume))
-
-
-def vector(numbers: Array) -> Vector:
-    """Three numbers as a tuple."""
-    return (float(numbers[0]), float(numbers[1]), float(numbers[2]))
 
 
 def matrix(rows: Array) -> Matrix:

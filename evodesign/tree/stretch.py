@@ -72,24 +72,12 @@ def main_axis(tree: Tree, link: Link) -> tuple[Vector, float] | None:
 
 def _upright(tree: Tree, link: Link) -> Vector | None:
     """The root's z axis in a link that no joint moves and no mass is above; None in others."""
-    name, up_in_link = link.name, UP
-    while name != tree.root:
-        joint = tree.parent_joint[name]
+    joints, up_in_link = [tree.parent_joint[name] for name in tree.to_root(link.name)[:-1]], UP
+    for joint in reversed(joints):
         if joint.kind is not JointKind.FIXED or tree.link_by_name[joint.parent].inertia.mass > 0.0:
             return None
-        name = joint.parent
-    for joint in _above(tree, link.name):
         up_in_link = rotate(transpose(joint.parent_from_child.rotation), up_in_link)
     return up_in_link
-
-
-def _above(tree: Tree, name: str) -> list[Joint]:
-    """The joints from the root to a link."""
-    joints = []
-    while name != tree.root:
-        joints.append(tree.parent_joint[name])
-        name = joints[-1].parent
-    return joints[::-1]
 
 
 def _moving(tree: Tree, link: Link) -> Iterator[Joint]:

@@ -14,12 +14,12 @@ from __future__ import annotations
 import base64
 import binascii
 import math
-from collections.abc import Iterable
 
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from evodesign.body.placement import Vector, vector
 from evodesign.errors import InputError
 
 MOST_VERTICES, MOST_TRIANGLES = 65_536, 20_000
@@ -29,8 +29,6 @@ LARGEST = 1e9
 """Coordinate, or edge of a box, and its cube: the largest volume."""
 
 STEPS = 65_535
-
-Triple = tuple[float, float, float]
 
 
 class Surface(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -44,8 +42,8 @@ class Surface(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         volume: of the mesh before it was simplified, in the cube of its unit; 0 if it is not watertight.
     """
 
-    low: Triple
-    step: Triple
+    low: Vector
+    step: Vector
     points: str
     triangles: str
     volume: float = 0.0
@@ -67,7 +65,7 @@ def surface_of(vertices: NDArray[np.float64], faces: NDArray[np.int64], volume: 
     low = vertices.min(axis=0)
     step = (vertices.max(axis=0) - low) / STEPS
     steps = np.rint((vertices - low) / np.where(step > 0.0, step, 1.0))
-    return Surface(_triple(low), _triple(step), _base64(steps), _base64(faces), volume)
+    return Surface(vector(low), vector(step), _base64(steps), _base64(faces), volume)
 
 
 def surface_text(surface: Surface) -> str:
@@ -110,8 +108,3 @@ def _numbers(text: str) -> NDArray[np.uint16]:
 
 def _base64(numbers: NDArray[np.float64] | NDArray[np.int64]) -> str:
     return base64.b64encode(numbers.astype("<u2").tobytes()).decode()
-
-
-def _triple(numbers: Iterable[float]) -> Triple:
-    x, y, z = (float(number) for number in numbers)
-    return (x, y, z)

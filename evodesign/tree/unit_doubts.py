@@ -47,7 +47,10 @@ def unit_doubts(links: Iterable[Link], joints: Iterable[Joint]) -> Iterator[str]
     wide = [f"{link.name} ({span:.3g} m)" for link in heavy if (span := _gyration(link.inertia)) > WIDEST]
     if wide:
         yield f"radii of gyration of more than {WIDEST:g} m, which look like kg mm^2: {listed(wide)}"
-    spans = {link.name: list(map(_span, _shapes(link))) for link in links}
+    spans = {
+        link.name: [*(_span(each.shape) for each in link.solids), *(_span(each.shape) for each in link.looks)]
+        for link in links
+    }
     yield from _long("links with shapes", {name: max(each, default=0.0) for name, each in spans.items()})
     yield from _short((link, spans[link.name]) for link in links if not link.meshes)
     too_heavy = [f"{link.name} ({link.mass:g} kg)" for link in heavy if link.mass > HEAVIEST]
@@ -100,10 +103,6 @@ def _short(spans: Iterable[tuple[Link, Sequence[float]]]) -> Iterator[str]:
 def _mesh_span(mesh: Mesh) -> float:
     vertices = vertices_of(mesh)
     return float((vertices.max(axis=0) - vertices.min(axis=0)).max())
-
-
-def _shapes(link: Link) -> list[Shape]:
-    return [*(solid.shape for solid in link.solids), *(look.shape for look in link.looks)]
 
 
 def _span(shape: Shape) -> float:

@@ -38,7 +38,6 @@ from evodesign.tree.model import Joint, JointKind, Link, Look, Mesh, Tree
 from evodesign.tree.triangulation import capsule_surface, scaled_surface
 from evodesign.tree.unit_doubts import unit_doubts
 from evodesign.tree.urdf_check import checked_urdf
-from evodesign.tree.urdf_mimic import held_positions
 from evodesign.tree.urdf_write import UNLIMITED
 
 LEAST_MASS = 1e-9
@@ -247,3 +246,34 @@ def _vector(element: etree._Element | None, name: str, otherwise: tuple[float, .
     text = None if element is None else element.get(name)
     x, y, z = otherwise if text is None else map(float, text.split())
     return (x, y, z)
+
+
+def held_positions(robot: etree._Element, source: str) -> dict[str, float]:
+    """Positions [rad or m] of the mimic joints, by name, while every joint that moves by itself is at zero.
+
+        q = multiplier q_leader + offset        q_leader = 0 where the leader follows nobody
+
+    Leaders may follow others themselves.
+
+    Args:
+        robot: of a checked URDF.
+        source: the file's name, for messages.
+    Raises:
+        ModelError: joints follow each other in a ring.
+    Source: wiki.ros.org/urdf/XML/joint (mimic); pinocchio and MuJoCo place such chains likewise.
+    """
+    mimics = {joint.get("name"): joint.find("mimic") for joint in robot.findall("joint")}
+    followers = {name: mimic for name, mimic in mimics.items() if mimic is not None}
+    held: dict[str, float] = {}
+    for name in followers:
+        chain = [name]
+        while (leader := followers[chain[-1]].get("joint")) in followers and leader not in held:
+            if leader in chain:
+                wanted = "a leader that does not follow its follower"
+                raise ModelError(source, f"joint {name}.mimic.joint", wanted, f"'{leader}', which does")
+            chain.append(leader)
+        for each in reversed(chain):
+            mimic = followers[each]
+            slope, offset = float(mimic.get("multiplier", "1")), float(mimic.get("offset", "0"))
+            held[each] = slope * held.get(mimic.get("joint"), 0.0) + offset
+    return held

@@ -117,19 +117,16 @@ def add_joint(robot: etree._Element, joint: Joint) -> etree._Element:
     limits = {"effort": joint.effort, "velocity": joint.velocity}
     if joint.kind is not JointKind.CONTINUOUS:
         limits = {"lower": joint.lower, "upper": joint.upper} | limits
-    etree.SubElement(
-        element, "limit", {name: numbers_text([_bounded(limit)]) for name, limit in limits.items()}
-    )
+    finite = {
+        key: math.copysign(UNLIMITED, each) if math.isinf(each) else each for key, each in limits.items()
+    }
+    etree.SubElement(element, "limit", {key: numbers_text([each]) for key, each in finite.items()})
     return element
 
 
 def _add_origin(element: etree._Element, placement: Placement) -> None:
     rpy = rpy_from_matrix(placement.rotation)
     etree.SubElement(element, "origin", xyz=numbers_text(placement.translation), rpy=numbers_text(rpy))
-
-
-def _bounded(limit: float) -> float:
-    return math.copysign(UNLIMITED, limit) if math.isinf(limit) else limit
 
 
 def numbers_text(numbers: Iterable[Scalar]) -> str:

@@ -85,6 +85,10 @@ class WeldedTree:
         inertia = total([part for part in parts if part.mass])
         return WeldedBody(links, joint, inertia, self.places[links[0]].translation)
 
+    def heaviest(self, body: WeldedBody) -> str:
+        """Name of the heaviest link of a body."""
+        return max(body.links, key=lambda name: float(self.tree.link_by_name[name].inertia.mass))
+
     @cached_property
     def children(self) -> dict[str, tuple[str, ...]]:
         """Names of the bodies that each body carries."""

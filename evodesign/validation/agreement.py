@@ -11,10 +11,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from evodesign.human.measured_posture import HumanPosture
 from evodesign.validation.compare import POSTURES, ComparedCase
+from evodesign.validation.holds import ComparedHold
 from evodesign.validation.measured import HANGING, HOLDING
+from evodesign.validation.posed import Posed
 
 WAYS: tuple[HumanPosture | None, ...] = (None, *POSTURES)
 """What is compared with measurements: statics in the measured postures, then predictions."""
@@ -112,3 +115,76 @@ def _angles(of: Iterable[ComparedCase], posture: HumanPosture) -> Agreement | No
 
 def _rms(off: Sequence[float]) -> float:
     return math.hypot(*off) / math.sqrt(len(off))
+
+
+DIGITS = 3
+"""Of numbers in JSON, after the point."""
+
+
+def validation_json(compared: Sequence[ComparedCase], holds: Sequence[ComparedHold]) -> dict[str, Any]:
+    """Every case, how far figures agree, and holds that were settled, as `validate --json` prints them."""
+    return {
+        "lifts": [_case(each) for each in compared],
+        "agreement": [_agreements(each) for each in agreements(compared)],
+        "holds": [_hold(each) for each in holds],
+    }
+
+
+def _case(each: ComparedCase) -> dict[str, Any]:
+    case = each.case
+    return {
+        "lift": case.lift,
+        "who": case.who,
+        "stature_m": case.person.stature,
+        "mass_kg": case.person.mass,
+        "sex": str(case.person.sex),
+        "hands": case.hands,
+        "wrists": case.range,
+        "frames": len(case.frames),
+        "palms_m": round(each.palms, DIGITS),
+        "hand_force_n": round(each.hand_force, DIGITS),
+        "measured_n_m": _rounded(each.moments),
+        "measured_posture": _posed(each.ours),
+        "predicted": {str(kind): _posed(posed) for kind, posed in each.predicted.items()},
+    }
+
+
+def _posed(posed: Posed | None) -> dict[str, Any] | None:
+    if posed is None:
+        return None
+    places = {name: [round(value, DIGITS) for value in place] for name, place in posed.places.items()}
+    return {
+        "moments_n_m": _rounded(posed.moments),
+        "angles_deg": _rounded(posed.angles),
+        "places_x_z_m": places,
+    }
+
+
+def _agreements(each: Agreements) -> dict[str, Any]:
+    told: dict[str, Any] = {
+        "lift": each.lift,
+        "quantity": each.quantity,
+        "unit": each.unit,
+        "cases": each.cases,
+    }
+    for way, found in zip(WAYS, each.by_way, strict=True):
+        slope = None if found is None or found.slope is None else round(found.slope, DIGITS)
+        told[way or "statics"] = found and {"slope": slope, "rms": round(found.off, DIGITS)}
+    return told
+
+
+def _hold(each: ComparedHold) -> dict[str, Any]:
+    predicted = {
+        str(kind): None if angles is None else _rounded(angles) for kind, angles in each.predicted.items()
+    }
+    return {
+        "source": each.source,
+        "who": each.who,
+        "palms_over_stature": each.eta,
+        "measured_deg": _rounded(each.measured),
+        "predicted_deg": predicted,
+    }
+
+
+def _rounded(values: Any) -> dict[str, float]:
+    return {name: round(value, DIGITS) for name, value in values.items()}

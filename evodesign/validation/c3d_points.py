@@ -13,8 +13,9 @@ HAS-Motion, Visual3D tutorial Plug-In Gait Full-Body (both pages were read); the
 
 from __future__ import annotations
 
+import itertools
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -164,11 +165,11 @@ def joint_tracks(points: Mapping[str, Array], given: PointsFile, source: str, gi
             found[joint] = dict(_common(joint, points, bare))
     if not found["hip"]:
         found["hip"] = dict(_hips(points, bare))
-    seen = {
-        joint: kept
+    visible = {
+        joint: {side: track for side, track in sides.items() if np.isfinite(track).all(1).mean() >= VISIBLE}
         for joint, sides in found.items()
-        if (kept := {side: track for side, track in sides.items() if _visible(track)})
     }
+    seen = {joint: sides for joint, sides in visible.items() if sides}
     for joint in (*NEEDED, *given.named()):
         if joint not in seen:
             _refuse(joint, points, source, named=joint in given.named())
@@ -224,7 +225,7 @@ def _hips(points: Mapping[str, Array], bare: Mapping[str, str]) -> Iterator[tupl
     spines = [
         [next((p for name in of if (p := _sided(name, side, bare))), None) for side in SIDES] for of in PELVIS
     ]
-    known = [points[name] for name in _flat(spines) if name is not None]
+    known = [points[name] for name in itertools.chain(*spines) if name is not None]
     if len(known) < len(SIDES) * len(PELVIS):
         return
     left, right, back_left, back_right = known
@@ -238,16 +239,7 @@ def _hips(points: Mapping[str, Array], bare: Mapping[str, str]) -> Iterator[tupl
     yield "right", right + moved + inwards * width * lateral
 
 
-def _flat(of: Iterable[Iterable[str | None]]) -> Iterator[str | None]:
-    for each in of:
-        yield from each
-
-
 def _unit(of: Array) -> tuple[Array, Array]:
     """Directions and lengths, by frame."""
     length = np.linalg.norm(of, axis=1, keepdims=True)
     return of / np.where(length > 0.0, length, np.nan), length
-
-
-def _visible(track: Array) -> bool:
-    return bool(np.mean(np.all(np.isfinite(track), axis=1)) >= VISIBLE)

@@ -8,11 +8,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from statistics import fmean
 
+import numpy as np
+
 from evodesign.human.anthropometry import Person
-from evodesign.human.measured_posture import HumanPosture, PostureRow
+from evodesign.human.measured_posture import ASSUMPTION, HumanPosture, PostureRow, posture_rows
 from evodesign.mechanics.agent import HUMAN, ROBOT, Role
 from evodesign.mechanics.balance import GRAVITY
 from evodesign.mechanics.payload import Payload
@@ -23,9 +25,8 @@ from evodesign.posture.formulations.person import PersonProblem
 from evodesign.posture.results import AgentPosture
 from evodesign.posture.symmetry import Form, half
 from evodesign.posture.warm_start import instants_of, layout_of
-from evodesign.validation.measured import HANGING, HOLDING, Frame, MeasuredCase
+from evodesign.validation.measured import HANGING, HOLDING, Frame, MeasuredCase, box_lifts
 from evodesign.validation.posed import ANGLES, MOMENTS, Posed, PosedPerson, agent_of
-from evodesign.validation.prior import palm_height, rows_without
 
 POSTURES = (HumanPosture.MEASURED, HumanPosture.LEAST_TORQUE)
 
@@ -123,7 +124,10 @@ def compare(
 def _compared(
     case: MeasuredCase, person: PosedPerson, holders: Mapping[HumanPosture, Holder]
 ) -> ComparedCase:
-    pairs = [(_posture(person, frame), frame) for frame in case.frames]
+    pairs = [
+        (person.from_places(each.places) if each.places else person.from_angles(each.features), each)
+        for each in case.frames
+    ]
     ours = _mean([person.posed(posture, frame.hand_force) for posture, frame in pairs])
     palms = fmean(palms_of(person, frame) for frame in case.frames)
     force = fmean(frame.hand_force for frame in case.frames)
@@ -135,10 +139,6 @@ def _compared(
         kind: None if posture is None else person.posed(posture, force) for kind, posture in holds.items()
     }
     return ComparedCase(case, palms, force, moments, ours if case.has_legs else ours.above_legs(), predicted)
-
-
-def _posture(person: PosedPerson, frame: Frame) -> AgentPosture:
-    return person.from_places(frame.places) if frame.places else person.from_angles(frame.features)
 
 
 def palms_of(person: PosedPerson, frame: Frame) -> float:
@@ -168,3 +168,51 @@ def _mean(of: Sequence[Posed]) -> Posed:
             for name in of[0].places
         },
     )
+
+
+HAND = 0.0495
+"""From wrist to palm, over stature: that of the generated man."""
+
+USED = ((1, "empty"), (2, "box"), (3, "box"), (4, "box"), (5, "box"))
+"""Ranges of height, from number times 0.15 m, and what the hands hold there."""
+
+SIDEWAYS = (0.15, 0.2)
+"""Mean and deviation of the upper arm's sine outwards: an assumption."""
+
+
+def palm_height(wrist: float, fore: float, stature: float) -> float:
+    """Height of the palms [m] from that of the wrists, with the forearm at an angle [rad] from hanging."""
+    return wrist - HAND * stature * math.cos(fore)
+
+
+@cache
+def rows_without(who: str) -> tuple[PostureRow, ...]:
+    """The rows of measured postures, those of the box lifts computed from all men but one, who is predicted.
+
+    Source: the rows `boxlift` of `human/data/measured_posture.csv`, again from `data/box_lifts.csv`.
+    """
+    others = [case for case in box_lifts() if case.who != who]
+    by_range = [[_features(c) for c in others if (c.bin, c.hands) == used] for used in USED]
+    names = [name for name in by_range[0][0] if name != "eta"]
+    spread = {
+        name: float(np.sqrt(np.mean([np.var([man[name] for man in of], ddof=1) for of in by_range])))
+        for name in names
+    }
+    found = []
+    for of in by_range:
+        mean = {name: float(np.mean([man[name] for man in of])) for name in of[0]}
+        found += [
+            PostureRow(name, "both", mean["eta"], mean[name], spread[name], len(of), "measured", "boxlift")
+            for name in names
+        ]
+        found.append(PostureRow("sideways", "both", mean["eta"], *SIDEWAYS, 0, ASSUMPTION, "none"))
+    return (*found, *(row for row in posture_rows() if row.task != "both" or math.isnan(row.eta)))
+
+
+def _features(case: MeasuredCase) -> Mapping[str, float]:
+    """Of a man in one range of height, as the data file has them."""
+    (frame,), stature = case.frames, case.person.stature
+    fore = frame.features["arm"] + frame.features["elbow"]
+    angles = {name: math.degrees(value) for name, value in frame.features.items() if name != "ahead"}
+    ahead = frame.features["ahead"] + HAND * math.sin(fore)
+    return {**angles, "ahead": ahead, "eta": palm_height(frame.wrist, fore, stature) / stature}

@@ -39,7 +39,7 @@ def run(tmp_path: Path) -> RunLog:
     header = toy_header()
     with RunWriter(tmp_path / "run", header) as log:
         for evaluation in toy_evaluations(header, 6):
-            log.evaluation(evaluation)
+            log.write(evaluation)
     return read_run(tmp_path / "run")
 
 

@@ -217,7 +217,7 @@ def test_a_run_tells_it_from_python(tmp_path: Path) -> None:
     points = quasi_random(64, 2)
     with RunWriter(tmp_path / "run", made) as log:
         for evaluation in logged(made, points, {"torque": points[:, 0] + 0.2 * points[:, 1]}):
-            log.evaluation(evaluation)
+            log.write(evaluation)
     told = evodesign.open_run(tmp_path / "run").matters(through=3)
     (objective,) = told["objectives"]
     assert [each["name"] for each in objective["parameters"]] == ["p0", "p1"]

@@ -29,8 +29,8 @@ def run(tmp_path: Path) -> Run:
     with RunWriter(tmp_path / "run", HEADER) as writer:
         for evaluation in RUN:
             if evaluation in FRONT:
-                writer.detail(toy_detail(evaluation))
-            writer.evaluation(evaluation)
+                writer.write(toy_detail(evaluation))
+            writer.write(evaluation)
     return evodesign.open_run(str(tmp_path / "run"))
 
 
@@ -139,7 +139,7 @@ def dtypes_are_right(frame: pd.DataFrame) -> None:
 def written(directory: Path, evaluations: list[Evaluation]) -> Run:
     with RunWriter(directory, HEADER) as writer:
         for evaluation in evaluations:
-            writer.evaluation(evaluation)
+            writer.write(evaluation)
     return evodesign.open_run(directory)
 
 

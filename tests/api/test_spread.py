@@ -147,7 +147,7 @@ def test_what_cannot_be_drawn_is_refused_in_a_sentence(copied: Path, tmp_path: P
     header = msgspec.structs.replace(run.header, problem=source)
     with RunWriter(tmp_path / "least", header) as log:
         for evaluation in run.evaluations:
-            log.evaluation(evaluation)
+            log.write(evaluation)
     with pytest.raises(InputError, match="found no spread in the problem"):
         evodesign.spread(tmp_path / "least", pool="serial")
     with pytest.raises(InputError, match='a person with posture = "measured"'):

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from evodesign.cli.stopping import SignalledStop
+from evodesign.cli.session import SignalledStop
 from evodesign.errors import Interrupted
 from evodesign.evolve import start
 from evodesign.pool.registry import make_pool

@@ -41,7 +41,7 @@ def test_a_design_of_a_run_is_exported_with_cad_files_that_its_readme_explains(
 def test_without_open_cascade_a_sentence_says_what_to_install_before_anything_is_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("evodesign.report.cad.installed.find_spec", lambda name: None)
+    monkeypatch.setattr("evodesign.report.export.folder.find_spec", lambda name: None)
     assert util.find_spec("OCP") is not None
     with pytest.raises(InputError, match=SENTENCE):
         app(["export", "no/run", "1", "--to", str(tmp_path / "new"), "--cad"], standalone_mode=False)

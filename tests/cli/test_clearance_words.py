@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from evodesign.cli.tables.bill import clearance_in_words
+from evodesign.cli.tables.design import clearance_in_words
 
 
 @pytest.mark.parametrize(

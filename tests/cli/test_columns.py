@@ -29,19 +29,20 @@ from evodesign.cli.main import COMMANDS, app
 from evodesign.cli.tables.reproduction import (
     claims_table,
     reproduction_lines,
+    robots_table,
+    sequel_lines,
     stricter_table,
     torque_table,
 )
-from evodesign.cli.tables.sequel import robots_table, sequel_lines
 from evodesign.cli.tables.table import names, numbers, titled
-from evodesign.cli.tables.worst_cases import forces_by_height, torques_by_height
+from evodesign.cli.tables.worst_cases import moment_tables
 from evodesign.problem.build import DesignProblem
 from evodesign.records import Status
 from evodesign.report.scene_models import SceneModels
 from evodesign.reproduction import claims2023
 from evodesign.reproduction.claims2022 import human_claim, reach_claim, reduction_claim, table_claim
+from evodesign.reproduction.codesign2023 import SequelReproduction
 from evodesign.reproduction.files2022 import Found, Published, ReproducedRobot, Reproduction
-from evodesign.reproduction.files2023 import SequelReproduction
 from evodesign.runlog.run import read_run
 from evodesign.runlog.writer import RunWriter
 from tests.report.scenes import random_detail
@@ -114,7 +115,7 @@ def place(repository: Path, tmp_path: Path, run_with_people: Path, monkeypatch: 
     header = toy_header(budget=60)
     with RunWriter(tmp_path / "many", header) as log:
         for evaluation in toy_evaluations(header, 60):
-            log.evaluation(evaluation)
+            log.write(evaluation)
     for folder in ("populations", "problems"):
         Path(folder).symlink_to(repository / folder)
     text = (GOLDEN / "lifting" / "problem.toml").read_text(encoding="utf-8")
@@ -272,8 +273,8 @@ def test_cards_of_several_people_and_loads_are_whole(
 def test_tables_over_many_heights_go_on_below(problem: DesignProblem, both: BothWidths) -> None:
     heights = tuple(0.5 + 0.125 * number for number in range(12))
     cases = random_detail(problem, 1, heights).cases
-    output.console().print(torques_by_height(cases))
-    output.console().print(forces_by_height(cases))
+    for table in moment_tables(cases):
+        output.console().print(table)
     assert_whole(*both.texts)
     narrow, wide = both.texts
     assert (wide.count("┏"), narrow.count("agent") > 2) == (2, True)

@@ -45,7 +45,7 @@ def logged(directory: Path, seed: int, algorithm: str, count: int, objectives: i
             found = evaluation.assessment.objectives
             values = {name: value for name, value in found.items() if name in names}
             assessment = msgspec.structs.replace(evaluation.assessment, objectives=values)
-            writer.evaluation(msgspec.structs.replace(evaluation, assessment=assessment))
+            writer.write(msgspec.structs.replace(evaluation, assessment=assessment))
     return directory
 
 

@@ -167,7 +167,7 @@ def test_a_run_without_feasible_designs_says_what_comes_nearest(
 ) -> None:
     only = heavy(run)
     with RunWriter(tmp_path / "heavy", run.header) as log:
-        log.evaluation(only)
+        log.write(only)
     excess = only.assessment.constrained["mass"] - HEAVIEST
     shown = printed(capsys, tmp_path / "heavy")
     assert f"design {only.number} comes nearest: mass is {excess:.4g} kg above 65 kg" in shown

@@ -32,7 +32,7 @@ RUN = toy_evaluations(HEADER, 60)
 def logged(directory: Path, header: RunHeader, evaluations: list[Evaluation]) -> Path:
     with RunWriter(directory, header) as writer:
         for evaluation in evaluations:
-            writer.evaluation(evaluation)
+            writer.write(evaluation)
     return directory
 
 

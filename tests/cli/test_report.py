@@ -16,7 +16,7 @@ from tests.runlog.toys import toy_evaluations, toy_header
 def run(tmp_path: Path) -> Path:
     with RunWriter(tmp_path / "run", toy_header()) as log:
         for evaluation in toy_evaluations(toy_header(), 12):
-            log.evaluation(evaluation)
+            log.write(evaluation)
     return tmp_path / "run"
 
 

@@ -136,7 +136,7 @@ def test_a_run_of_other_versions_is_refused_unless_accepted(
     versions = old.header.versions | {"pymoo": "0.5.0"}
     with RunWriter(tmp_path / "old", msgspec.structs.replace(old.header, versions=versions)) as log:
         for evaluation in old.evaluations:
-            log.evaluation(evaluation)
+            log.write(evaluation)
     command = [*COMMAND, "resume", str(tmp_path / "old"), "--pool", "serial"]
     refused = subprocess.run(command, capture_output=True, text=True, check=False)
     assert refused.returncode == 2

@@ -16,7 +16,7 @@ from evodesign.cli.export import export
 from evodesign.cli.output import rounded
 from evodesign.cli.report import report
 from evodesign.cli.show import show
-from evodesign.cli.tables.effort import TITLE
+from evodesign.cli.tables.people import TITLE
 from evodesign.errors import EvodesignError, InputError, RunError
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.posture.precompute.precomputed import Precomputed
@@ -49,8 +49,8 @@ def write_run(
         known = {detail.evaluation: detail for detail in details}
         for evaluation in evaluations:
             if evaluation.number in known:
-                log.detail(known[evaluation.number])
-            log.evaluation(evaluation)
+                log.write(known[evaluation.number])
+            log.write(evaluation)
     return place
 
 

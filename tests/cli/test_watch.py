@@ -28,8 +28,8 @@ def test_screen_shows_the_log_s_numbers(tmp_path: Path, capsys: pytest.CaptureFi
     header = msgspec.structs.replace(HEADER, problem_name="<script>[red]")
     with RunWriter(tmp_path, header) as writer:
         for evaluation in RUN[:8]:
-            writer.evaluation(evaluation)
-        writer.generation(toy_generation(1, 8))
+            writer.write(evaluation)
+        writer.write(toy_generation(1, 8))
     look(tmp_path, once=True)
     shown = capsys.readouterr().out
     best = front(HEADER.objectives, RUN[:8])
@@ -48,8 +48,8 @@ def test_watcher_goes_on_while_the_search_writes_and_ends_with_it(
         watcher.start()
         for number in range(3):
             for evaluation in RUN[4 * number : 4 * number + 4]:
-                writer.evaluation(evaluation)
-            writer.generation(toy_generation(number, 4 * number + 4))
+                writer.write(evaluation)
+            writer.write(toy_generation(number, 4 * number + 4))
         watcher.join(timeout=60)
         assert not watcher.is_alive()
     lines = capsys.readouterr().out.splitlines()

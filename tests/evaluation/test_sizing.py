@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 import pytest
@@ -149,17 +151,18 @@ def test_rounds_begin_at_the_sizes_that_a_sketch_asks_for_and_end_where_they_do_
 ) -> None:
     begun: list[list[float]] = []
     sketches: list[tuple[CaseSolution, ...]] = []
-    first, sketched = _OneDesign.first, _OneDesign.sketched
+    cases, sketched = _OneDesign.cases, _OneDesign.sketched
 
-    def seen(design: _OneDesign, values: Sequence[float]) -> tuple[CaseSolution, ...]:
-        begun.append(list(values[2:]))
-        return first(design, values)
+    def seen(design: _OneDesign, values: Sequence[float], *checked: Any) -> tuple[CaseSolution, ...]:
+        if not checked:
+            begun.append(list(values[2:]))
+        return cases(design, values, *checked)
 
     def kept(design: _OneDesign, values: Sequence[float]) -> tuple[CaseSolution, ...]:
         sketches.append(sketched(design, values))
         return sketches[-1]
 
-    monkeypatch.setattr(_OneDesign, "first", seen)
+    monkeypatch.setattr(_OneDesign, "cases", seen)
     monkeypatch.setattr(_OneDesign, "sketched", kept)
     told = inner.solve(DESIGN)
     monkeypatch.setattr(_OneDesign, "sketched", lambda design, values: ())
@@ -193,8 +196,8 @@ def test_gradients_go_through_the_sizes(
     sized: DesignProblem, inner: Evaluator, result: DesignResult, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     gradients = assessed_gradients(sized, Sensitivities(sized, inner=inner.inner), DESIGN, result).values
-    exactly = sizing.sized
-    monkeypatch.setattr(sizing, "sized", lambda *a, **k: exactly(*a, **k, tolerance=1e-10, rounds=12))
+    exactly = partial(sizing.SizingRounds, tolerance=1e-10, rounds=12)
+    monkeypatch.setattr(sizing, "SizingRounds", exactly)
     kinds = objective_kinds()
     for position, parameter in enumerate(sized.space.records):
         step = 1e-3 * DESIGN[position]

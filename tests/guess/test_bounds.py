@@ -11,7 +11,7 @@ import pytest
 
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Solid
-from evodesign.guess.bounds import LOWER, STEP, UPPER, length_bounds
+from evodesign.guess.parameters import LOWER, STEP, UPPER, length_bounds
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Joint, JointKind, Link, Tree
 from evodesign.tree.resize import resize

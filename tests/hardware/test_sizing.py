@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import pytest
 
 from evodesign.hardware.actuators import actuator_law
-from evodesign.hardware.sizing import ROUNDS, sized
+from evodesign.hardware.sizing import ROUNDS, Sizes, Sizing, SizingRounds
 from evodesign.records import Status
+
+
+def sized(
+    demand: Callable[[Sizes], Sizes | None],
+    start: Sizes,
+    margins: Sizes,
+    bounds: dict[str, tuple[float, float]],
+) -> Sizing:
+    rounds = SizingRounds(start, margins, bounds)
+    while True:
+        found = rounds.told(demand(rounds.sizes))
+        if found is not None:
+            return found
+
 
 WIDE = {"elbow": (0.1, 500.0), "shoulder": (0.1, 500.0)}
 

@@ -13,8 +13,9 @@ from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.motion import lift_starts as trained
 from evodesign.motion.lift_program import LiftProgram, LiftStart
 from evodesign.motion.lift_starts import lift_portfolio
-from evodesign.motion.lifting import MOVED, lift_program, lift_starts
+from evodesign.motion.lifting import MOVED, _ends, lift_program, lift_starts
 from evodesign.motion.solution import LiftSolution
+from evodesign.nlp.method import Ending
 from evodesign.posture.precompute.keys import key_of
 from evodesign.posture.precompute.pieces import encoded_piece, with_piece
 from evodesign.posture.precompute.plan import Piece, Subject, lift_pieces
@@ -127,3 +128,29 @@ def test_starts_of_a_lift_are_kept_for_problems_of_the_same_holds(problem: Desig
 
 def piece_of(problem: DesignProblem, lift: Lift) -> Piece:
     return Piece(Subject.LIFT, problem.scene.pair, lift)
+
+
+class Slow:
+    """A program whose solves take as many iterations as their starts' names have letters, at most `most`."""
+
+    def __init__(self, most: int) -> None:
+        self.asked: list[tuple[str, bool]] = []
+        self._most = most
+
+    def solve(
+        self, lift: Lift, start: str, design: object, mass: float, *, briefly: bool
+    ) -> tuple[Ending, float]:
+        self.asked.append((start, briefly))
+        limit, nothing = 2 if briefly else self._most, np.zeros(0)
+        word = "Solve_Succeeded" if len(start) <= limit else "Maximum_Iterations_Exceeded"
+        return Ending(nothing, 1.0, word, min(len(start), limit), nothing, nothing, nothing), 0.0
+
+
+def test_starts_that_take_long_are_given_up_unless_all_do() -> None:
+    some, none = Slow(9), Slow(3)
+    found = _ends(some, LIFT, {name: name for name in ("a", "long")}, (), 5.0)  # type: ignore[arg-type]
+    assert [each.solved for each in found.values()] == [True, False]
+    assert some.asked == [("a", True), ("long", True)]
+    found = _ends(none, LIFT, {name: name for name in ("abc", "long")}, (), 5.0)  # type: ignore[arg-type]
+    assert [(each.solved, each.ending.iterations) for each in found.values()] == [(True, 3), (False, 3)]
+    assert none.asked[2:] == [("abc", False), ("long", False)]

@@ -190,10 +190,11 @@ def solved(problem: DesignProblem, *, halves: bool) -> tuple[JointPostures, Case
     forms = symmetric_forms(scene) if halves else (whole(scene.robot), whole(scene.human))
     setting = Setting(scene, problem.space, problem.weights, problem.options)
     postures = JointPostures("symmetric" if halves else "whole", forms, setting, SolverCache())
-    trial = postures.solve(unscaled(problem), problem.tasks[0], (), Unchecked())
+    task = problem.tasks[0]
+    trial = postures.solve(unscaled(problem), task, postures.starts(task), Unchecked())
     assert trial.best is not None
     best = trial.best
-    case = scene.case(problem.tasks[0])
+    case = scene.case(task)
     return postures, CaseSolution(
         case, best.attempt.status, "solved", best.instants, attempt=best.attempt, raw=best.raw
     )

@@ -219,7 +219,8 @@ def test_a_start_of_the_robot_alone_begins_beside_the_mean_person(
     robot = ReachProblem(setting, symmetric=True, solvers=solvers).extreme_posture(design, HIGHEST)
     assert {name.split(".")[0] for name in robot[0]} == {ROBOT}
     checker = Checker(scene, *(AgentModel.of(agent, agent.tree) for agent in scene.agents))
-    trial = postures.solve(design, Hold(height_m=0.9), robot, checker)
+    hold = Hold(height_m=0.9)
+    trial = postures.solve(design, hold, postures.starts(hold, robot), checker)
     assert [attempt.status for attempt in trial.attempts] == [Status.SOLVED]
 
 

@@ -16,9 +16,8 @@ from evodesign.errors import InputError
 from evodesign.problem import mesh_reading
 from evodesign.problem.build import build_problem
 from evodesign.problem.copied import copy_source
-from evodesign.problem.mesh_places import MeshPlaces
 from evodesign.problem.mesh_reading import MOST_BYTES, read_mesh
-from evodesign.problem.meshes import OF_ONE, kept_name, with_surfaces
+from evodesign.problem.meshes import OF_ONE, MeshPlaces, kept_name, with_surfaces
 from evodesign.problem.source import read_source
 from evodesign.records import ProblemSource
 from evodesign.tree.resize import resize

@@ -86,6 +86,6 @@ def write_several(problem: DesignProblem, place: Path, designs: int = 2, cases: 
                 seconds=0.1,
                 worker="here",
             )
-            log.detail(Detail(evaluation=number, cases=heights))
-            log.evaluation(evaluation)
+            log.write(Detail(evaluation=number, cases=heights))
+            log.write(evaluation)
     return read_run(place)

@@ -15,7 +15,6 @@ from evodesign.reproduction.claims2025 import (
     cost_claim,
     front_claim,
     human_claim,
-    human_torque,
     reach_claim,
     robot_claim,
 )
@@ -38,8 +37,8 @@ def robots(b: ErgonomicRobot, c: ErgonomicRobot) -> dict[str, ErgonomicRobot]:
 def test_a_change_is_of_the_means_over_the_heights_that_both_hold() -> None:
     before = {0.8: TorqueNorms(1.0, 10.0), 1.0: TorqueNorms(1.0, 30.0), 1.2: TorqueNorms(1.0, 500.0)}
     after = {0.8: TorqueNorms(1.0, 20.0), 1.0: TorqueNorms(1.0, 10.0), 1.5: TorqueNorms(1.0, 7.0)}
-    assert change(before, after, human_torque) == pytest.approx(30.0 / 40.0 - 1.0)
-    assert change(before, {1.5: after[1.5]}, human_torque) is None
+    assert change(before, after, "human") == pytest.approx(30.0 / 40.0 - 1.0)
+    assert change(before, {1.5: after[1.5]}, "human") is None
 
 
 def test_torques_count_as_lower_from_two_hundredths_beside_both_robots() -> None:

@@ -21,10 +21,10 @@ EVALUATIONS = toy_evaluations(HEADER, 12)
 
 def write(writer: RunWriter, evaluations: list[Evaluation]) -> None:
     for evaluation in evaluations:
-        writer.detail(toy_detail(evaluation))
-        writer.evaluation(evaluation)
-    writer.generation(toy_generation(0, len(evaluations)))
-    writer.front(toy_front(0))
+        writer.write(toy_detail(evaluation))
+        writer.write(evaluation)
+    writer.write(toy_generation(0, len(evaluations)))
+    writer.write(toy_front(0))
 
 
 def test_every_look_gives_what_was_written_since_the_last(tmp_path: Path) -> None:
@@ -33,7 +33,7 @@ def test_every_look_gives_what_was_written_since_the_last(tmp_path: Path) -> Non
         follower = Follower(tmp_path)
         assert [logged.record for logged in follower.look()] == [HEADER]
         for evaluation in EVALUATIONS:
-            writer.evaluation(evaluation)
+            writer.write(evaluation)
             assert [logged.record for logged in follower.look()] == [evaluation]
             assert not follower.ended
         assert follower.look() == []
@@ -76,7 +76,7 @@ def test_a_resumed_run_goes_on_in_its_next_segment(tmp_path: Path) -> None:
     follower.look()
     assert follower.ended
     with RunWriter.next_segment(tmp_path, HEADER) as writer:
-        writer.evaluation(EVALUATIONS[4])
+        writer.write(EVALUATIONS[4])
         assert [logged.record for logged in follower.look()] == [HEADER, EVALUATIONS[4]]
         assert not follower.ended
 

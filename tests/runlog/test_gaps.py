@@ -121,17 +121,17 @@ def test_evaluations_of_a_generation_come_in_any_order_but_not_those_without_gen
     with RunWriter(tmp_path / "run", header) as log:
         for evaluation in toy_evaluations(header, 12)[5:]:
             turn = Turn(number=evaluation.number, told=evaluation.number) if asynchronous else None
-            log.evaluation(msgspec.structs.replace(evaluation, turn=turn))
+            log.write(msgspec.structs.replace(evaluation, turn=turn))
     expected = ("missing evaluations: 0 to 4",) if asynchronous else ()
     assert read_run(tmp_path / "run").faults == expected
 
 
 def test_evaluations_below_a_concluded_generation_or_a_member_of_its_front_are_missed(tmp_path: Path) -> None:
     with RunWriter(tmp_path / "states", HEADER) as log:
-        log.generation(toy_generation(0, 12))
+        log.write(toy_generation(0, 12))
     assert read_run(tmp_path / "states").faults == ("missing evaluations: 0 to 11",)
     with RunWriter(tmp_path / "fronts", HEADER) as log:
-        log.front(toy_front(1))
+        log.write(toy_front(1))
     assert read_run(tmp_path / "fronts").faults == (
         "missing evaluations: 0 to 1",
         "missing fronts of generations: 0",

@@ -23,7 +23,7 @@ def write(directory: Path, evaluations: list[Evaluation], header: RunHeader = HE
     """A further segment with these evaluations."""
     with RunWriter.next_segment(directory, header) as log:
         for evaluation in evaluations:
-            log.evaluation(evaluation)
+            log.write(evaluation)
         return log.path
 
 
@@ -48,8 +48,8 @@ def test_what_overlapping_segments_repeat_is_read_once_and_in_order(tmp_path: Pa
     write(tmp_path / "run", EVALUATIONS[:6])
     with RunWriter.next_segment(tmp_path / "run", HEADER) as log:
         for number in (1, 0, 1):
-            log.generation(toy_generation(number, 4))
-            log.front(toy_front(number))
+            log.write(toy_generation(number, 4))
+            log.write(toy_front(number))
     run = read_run(tmp_path / "run")
     assert list(run.evaluations) == EVALUATIONS
     assert [generation.number for generation in run.generations] == [0, 1]
@@ -137,7 +137,7 @@ def test_a_long_session_goes_on_in_a_further_segment(tmp_path: Path, monkeypatch
     evaluations = toy_evaluations(HEADER, 11)
     with RunWriter(tmp_path / "run", HEADER) as log:
         for evaluation in evaluations:
-            log.evaluation(evaluation)
+            log.write(evaluation)
             log.commit()
     assert sorted(path.name for path in (tmp_path / "run").iterdir()) == [
         f"00{each}.mcap" for each in range(4)

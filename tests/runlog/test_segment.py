@@ -33,10 +33,10 @@ def write_small_log(directory: Path) -> dict[int, int]:
         for number in range(3):
             for evaluation in evaluations[2 * number : 2 * number + 2]:
                 if evaluation.number % 2:
-                    log.detail(toy_detail(evaluation))
-                log.evaluation(evaluation)
-            log.generation(toy_generation(number, 2 * number + 2))
-            log.front(toy_front(number))
+                    log.write(toy_detail(evaluation))
+                log.write(evaluation)
+            log.write(toy_generation(number, 2 * number + 2))
+            log.write(toy_front(number))
             log.commit()
             committed[log.path.stat().st_size] = 2 * number + 2
     return committed
@@ -77,7 +77,7 @@ def test_numbers_and_texts_come_back_to_the_last_bit(
     )
     directory = tmp_path_factory.mktemp("runs") / "run"
     with RunWriter(directory, HEADER) as log:
-        log.evaluation(evaluation)
+        log.write(evaluation)
     assert read_segment(directory / "000.mcap").evaluations == (evaluation,)
 
 
@@ -195,12 +195,12 @@ def test_a_failed_write_is_one_sentence_and_leaves_what_was_before(
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     with RunWriter(tmp_path / "run", HEADER) as log:
-        log.evaluation(evaluations[0])
+        log.write(evaluations[0])
         monkeypatch.setattr(os, "fsync", full)
         with pytest.raises(RunError, match=r"000\.mcap: cannot be written: No space left on device"):
             log.commit()
         with pytest.raises(RunError, match="earlier write was broken off"):
-            log.evaluation(evaluations[1])
+            log.write(evaluations[1])
     segment = read_segment(tmp_path / "run/000.mcap")
     assert segment.evaluations == (evaluations[0],)
     assert not segment.complete
@@ -211,11 +211,11 @@ def test_a_write_broken_off_by_ctrl_c_leaves_a_readable_log(
 ) -> None:
     evaluations = toy_evaluations(HEADER, 2)
     with RunWriter(tmp_path / "run", HEADER) as log:
-        log.evaluation(evaluations[0])
+        log.write(evaluations[0])
         with monkeypatch.context() as patch:
             patch.setattr("evodesign.runlog.writer.time.time_ns", _interrupt)
             with pytest.raises(KeyboardInterrupt):
-                log.evaluation(evaluations[1])
+                log.write(evaluations[1])
     assert read_segment(tmp_path / "run/000.mcap").evaluations == (evaluations[0],)
 
 
@@ -234,5 +234,5 @@ def test_a_finished_log_of_a_realistic_design_stays_small(tmp_path: Path) -> Non
     header = toy_header(dimension=16)
     with RunWriter(tmp_path / "run", header) as log:
         for evaluation in toy_evaluations(header, 96):
-            log.evaluation(evaluation)
+            log.write(evaluation)
     assert (tmp_path / "run/000.mcap").stat().st_size < 96 * 1300

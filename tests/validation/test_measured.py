@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from evodesign.human.measured_posture import posture_rows
+from evodesign.validation.compare import rows_without
 from evodesign.validation.measured import BIN, EMPTY, HANGING, HOLDING, box_lifts, data_rows, shipped_cases
-from evodesign.validation.prior import rows_without
 from tests.machine import leave_out
 
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "reference" / "measured"

@@ -5,23 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Group, RenderableType
+from rich.console import Group
 from rich.text import Text
 
 from evodesign.analysis.people_spread import PeopleSpread
 from evodesign.cli.output import heading, interval
-from evodesign.cli.tables.bill import actuators_table, mass_title
-from evodesign.cli.tables.cases import cases_table, summary_table
-from evodesign.cli.tables.constraints import constraints_table, violation_heading
-from evodesign.cli.tables.effort import TITLE as TITLE_OF_EFFORT
-from evodesign.cli.tables.effort import TITLE_OF_SEVERAL as TITLE_OF_SEVERAL_EFFORTS
-from evodesign.cli.tables.effort import effort_table
-from evodesign.cli.tables.limits import TITLE as TITLE_OF_LIMITS
-from evodesign.cli.tables.limits import limits_table
-from evodesign.cli.tables.people import TITLE, TITLE_OF_SEVERAL, people_table
+from evodesign.cli.tables.cases import case_tables
+from evodesign.cli.tables.design import actuators_table, constraints_table, limits_table, violation_heading
+from evodesign.cli.tables.people import effort_table, people_table
 from evodesign.cli.tables.spread import quantities_table
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
-from evodesign.cli.tables.worst_cases import forces_by_height, torques_by_height, worst_forces, worst_torques
+from evodesign.cli.tables.worst_cases import moment_tables
 from evodesign.errors import on_one_line
 from evodesign.records import Assessment, Parameter, materials_of
 from evodesign.report.opened_design import OpenedDesign
@@ -42,46 +36,26 @@ def card(opened: OpenedDesign, asked: Sequence[Ergonomics], bill: Mapping[str, A
         asked: of the people by each of its postures; none to leave it out.
         bill: of materials; empty to leave it out.
     """
-    assessment = opened.evaluation.assessment
-    spread = opened.spread()
-    several = any(outcome.case.label for outcome in assessment.cases)
-    reach = f"reach: {_reach(assessment)}"
-    made_of = materials_of(opened.run.header.parameters, assessment.design)
-    sections = {"objectives": _objectives(opened)}
-    if constraints := opened.run.header.constrained:
-        sections["constraints"] = constraints_table(constraints, "", ("value", assessment))
+    header, assessment, spread = opened.run.header, opened.evaluation.assessment, opened.spread()
+    tables = [_objectives(opened)]
+    if header.constrained:
+        tables.append(constraints_table(header.constrained, ("value", assessment)))
     if spread is not None:
-        title, table = _people(opened, spread)
-        sections[title] = table
-    sections["parameters"] = _parameters(opened)
-    if made_of:
-        sections["materials"] = _materials(made_of)
+        tables.append(_people(opened, spread))
+    tables.append(_parameters(opened))
+    if made_of := materials_of(header.parameters, assessment.design):
+        tables.append(titled("materials", names("parameter", "material"), made_of.items()))
     if bill:
-        sections[mass_title(bill)] = actuators_table(bill)
-    if several:
-        sections["torque norms |tau| over the cases [N m]"] = summary_table(assessment, "")
-        sections[f"the load in each case, torques in N m ({reach})"] = cases_table(assessment, "")
-    else:
-        sections[f"the load at each height ({reach})"] = cases_table(assessment, "")
-    moments = [moment for detail in opened.cases for moment in detail.few_moments]
-    if moments and several:
-        sections["largest joint torques [N m]"] = worst_torques(moments)
-        sections["contact forces [N]"] = worst_forces(moments)
-    elif moments:
-        sections["largest joint torques [N m]"] = torques_by_height(moments)
-        sections["contact forces [N]"] = forces_by_height(moments)
+        tables.append(actuators_table(bill))
+    tables += case_tables(assessment, f" (reach: {_reach(assessment)})")
+    if moments := [moment for detail in opened.cases for moment in detail.few_moments]:
+        tables += moment_tables(moments)
     if any(detail.limits for detail in opened.cases):
-        sections[TITLE_OF_LIMITS] = limits_table(opened.cases, "")
+        tables.append(limits_table(opened.cases))
     if asked:
         cases = [*zip((detail.case for detail in opened.cases), asked, strict=True)]
-        sections[TITLE_OF_SEVERAL if several else TITLE] = people_table(cases, titled=False)
-        sections[TITLE_OF_SEVERAL_EFFORTS if several else TITLE_OF_EFFORT] = effort_table(
-            cases, titled_too=False
-        )
-    parts: list[RenderableType] = [_title(opened)]
-    for title, table in sections.items():
-        parts += [Text(f"\n{title}", style="italic"), table]
-    return Group(*parts)
+        tables += [people_table(cases), effort_table(cases)]
+    return Group(_title(opened), *(part for table in tables for part in (Text(), table)))
 
 
 def _reach(assessment: Assessment) -> str:
@@ -105,7 +79,7 @@ def _title(opened: OpenedDesign) -> Text:
 
 
 def _objectives(opened: OpenedDesign) -> FittedTable:
-    table = titled("", [*names("objective"), *numbers("value", "best of the run")])
+    table = titled("objectives", [*names("objective"), *numbers("value", "best of the run")])
     assessment = opened.evaluation.assessment
     for objective in opened.run.header.objectives:
         best = max if objective.sense == "maximise" else min
@@ -118,7 +92,7 @@ def _objectives(opened: OpenedDesign) -> FittedTable:
     return table
 
 
-def _people(opened: OpenedDesign, spread: PeopleSpread) -> tuple[str, FittedTable]:
+def _people(opened: OpenedDesign, spread: PeopleSpread) -> FittedTable:
     """How its results spread over samples of people, and on how many fronts it is."""
     header, assessment, number = opened.run.header, opened.evaluation.assessment, opened.evaluation.number
     own, samples = spread.designs[number], spread.samples
@@ -126,26 +100,21 @@ def _people(opened: OpenedDesign, spread: PeopleSpread) -> tuple[str, FittedTabl
     reference = f"design {spread.reference}"
     table = quantities_table(spread, number, header.objectives, header.constrained, means, reference)
     lost = "" if own.feasible == own.samples else f", feasible in {own.feasible}"
-    return f"beside {own.samples} samples of people: on the front in {own.on_front} of {samples}{lost}", table
+    on_front = f"on the front in {own.on_front} of {samples}{lost}"
+    table.title = f"beside {own.samples} samples of people: {on_front}"
+    return table
 
 
 def _parameters(opened: OpenedDesign) -> FittedTable:
     within = names("within its bounds", "upper")
     columns = [*names("parameter"), *numbers("value"), *names("unit"), *numbers("lower"), *within]
-    table = titled("", columns)
+    table = titled("parameters", columns)
     for parameter in opened.run.header.parameters:
         value = opened.evaluation.assessment.design[parameter.name]
         unit = "" if parameter.unit == "1" else parameter.unit
         bar = _bar(parameter, value)
         ends = (f"{parameter.lower:g}", f"{parameter.upper:g}")
         table.add_row(parameter.name, value, unit, ends[0], bar, ends[1])
-    return table
-
-
-def _materials(made_of: Mapping[str, str]) -> FittedTable:
-    table = titled("", names("parameter", "material"))
-    for parameter, material in made_of.items():
-        table.add_row(parameter, material)
     return table
 
 

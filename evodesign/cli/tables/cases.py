@@ -9,15 +9,21 @@ from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.records import Assessment, CaseOutcome, Lift, Status
 
 
-def cases_table(assessment: Assessment, title: str) -> FittedTable:
-    """A design's postures in short, height by height; of several people or loads, case by case.
-
-    Of a lift the largest torques count.
+def case_tables(assessment: Assessment, remark: str = "") -> list[FittedTable]:
+    """A design's postures in short, height by height; of several people or loads a summary, then each case.
 
     Args:
         assessment: of the design.
-        title: over the table; empty for none.
+        remark: what follows the title of the cases.
     """
+    if any(outcome.case.label for outcome in assessment.cases):
+        title = f"the load in each case, torques in N m{remark}"
+        return [summary_table(assessment), cases_table(assessment, title)]
+    return [cases_table(assessment, f"the load at each height{remark}")]
+
+
+def cases_table(assessment: Assessment, title: str) -> FittedTable:
+    """A row for each case; of a lift the largest torques count."""
     outcomes = assessment.cases
     labels, moves = _name_columns(outcomes), any(isinstance(each.case.task, Lift) for each in outcomes)
     roles, unit = _roles(outcomes), "" if labels else " [N m]"
@@ -37,8 +43,8 @@ def cases_table(assessment: Assessment, title: str) -> FittedTable:
             _height(outcome) if labels or moves else outcome.case.task.heights[0],
             *(_undisturbed(outcome, role) for role in roles),
             *iterations,
-            _residual(outcome),
-            _status(outcome),
+            "-" if outcome.residual is None else f"{outcome.residual:.1e}",
+            outcome.status if outcome.status is Status.SOLVED else f"{outcome.status}: {outcome.reason}",
         )
         for name, norms in outcome.disturbed.items():
             own = [norms.get(role) for role in roles]
@@ -49,22 +55,15 @@ def cases_table(assessment: Assessment, title: str) -> FittedTable:
     return table
 
 
-def _residual(outcome: CaseOutcome) -> str:
-    return "-" if outcome.residual is None else f"{outcome.residual:.1e}"
-
-
-def _status(outcome: CaseOutcome) -> str:
-    return outcome.status if outcome.status == "solved" else f"{outcome.status}: {outcome.reason}"
-
-
-def summary_table(assessment: Assessment, title: str) -> FittedTable:
+def summary_table(assessment: Assessment) -> FittedTable:
     """Torque norms [N m] over all cases, and over those with each person or load, or at each height.
 
     Torques under disturbances count as the objectives count them, each beside the undisturbed one.
     """
     outcomes = assessment.cases
     measured = (column for role in _roles(outcomes) for column in (f"{role} mean", "worst"))
-    table = titled(title, [*names("cases"), *numbers("solved", *measured)])
+    columns = [*names("cases"), *numbers("solved", *measured)]
+    table = titled("torque norms |tau| over the cases [N m]", columns)
     roles = _roles(outcomes)
     _add_summary(table, "all", outcomes, roles, last=True)
     groups = [*_name_columns(outcomes).values(), _height]
@@ -116,16 +115,11 @@ def _mean_and_worst(norms: Sequence[float]) -> Iterator[float | None]:
 
 def _name_columns(outcomes: Sequence[CaseOutcome]) -> dict[str, Callable[[CaseOutcome], str]]:
     """Columns of names that tell cases apart, with what stands in them."""
-    columns = {"person": _human, "load": _payload}
+    columns: dict[str, Callable[[CaseOutcome], str]] = {
+        "person": lambda outcome: outcome.case.person,
+        "load": lambda outcome: outcome.case.payload,
+    }
     return {column: name for column, name in columns.items() if any(map(name, outcomes))}
-
-
-def _human(outcome: CaseOutcome) -> str:
-    return outcome.case.person
-
-
-def _payload(outcome: CaseOutcome) -> str:
-    return outcome.case.payload
 
 
 def _height(outcome: CaseOutcome) -> str:

@@ -80,11 +80,7 @@ def _slices(objective: Objective, design: Evaluation, made: Sequence[Slice]) -> 
         table.add_row(
             each.parameter,
             design.assessment.design[each.parameter],
-            *(_predicted(each, place) for place in (0, -1, best)),
+            *(f"{each.predicted[i]:.4g} ({each.low[i]:.4g} to {each.high[i]:.4g})" for i in (0, -1, best)),
             each.values[best],
         )
     return table
-
-
-def _predicted(each: Slice, place: int) -> str:
-    return f"{each.predicted[place]:.4g} ({each.low[place]:.4g} to {each.high[place]:.4g})"

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from evodesign.cli.output import heading
-from evodesign.cli.tables.constraints import constraints_table
+from evodesign.cli.tables.design import constraints_table
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.evaluation.polish import Aim, Polished
 from evodesign.problem.build import DesignProblem
@@ -29,7 +29,7 @@ def polish_tables(problem: DesignProblem, number: int, done: Polished) -> tuple[
         if after != before:
             parameters.add_row(name, before, after)
     held = (("before", done.before), ("after", done.after))
-    bounds = [constraints_table(problem.constraints, "constraints", *held)] if problem.constraints else []
+    bounds = [constraints_table(problem.constraints, *held)] if problem.constraints else []
     return objectives, *bounds, parameters
 
 

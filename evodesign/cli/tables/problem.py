@@ -1,8 +1,8 @@
-"""What a problem file was understood to mean, as tables."""
+"""What a problem file was understood to mean, and from what the problem is solved, as tables."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from rich.markup import escape
@@ -13,10 +13,12 @@ from evodesign.cli.tables.table import FittedTable, names, numbers, titled
 from evodesign.collision.pairs import JOINED, STILL
 from evodesign.guess.preflight import Finding
 from evodesign.mechanics.agent import ROBOT
+from evodesign.posture.precompute.precomputed import Precomputed
+from evodesign.posture.seeking.start_portfolio import StartPortfolio
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.inertia_rules import RuleDifference
 from evodesign.problem.model_json import model_json
-from evodesign.records import Constraint
+from evodesign.records import Case, Constraint
 from evodesign.violations import bounds_text
 
 CAPTION = (
@@ -28,12 +30,16 @@ CAPTION = (
 def model_tables(problem: DesignProblem) -> tuple[FittedTable | Table, ...]:
     """What was understood, for a person: agents, task, the robot's links, and the parameters."""
     shown = model_json(problem)
+    of_materials = [*names("material"), *numbers("density [kg/m^3]"), *names("source")]
+    materials = [
+        (each["name"], each["density_kg_per_m3"], each["source"]) for each in shown.get("materials", ())
+    ]
     return (
         _agents_table(problem.name, shown["agents"]),
         _task_table(shown, problem.constraints),
         _links_table(shown["links"]),
         _parameters_table(shown["parameters"]),
-        *([_materials_table(shown["materials"])] if "materials" in shown else []),
+        *([titled("materials", of_materials, materials)] if materials else []),
         *([_exempt_table(shown["collisions"]["exempt"])] if "collisions" in shown else []),
     )
 
@@ -51,10 +57,8 @@ def rules_table(differences: Iterable[RuleDifference]) -> FittedTable:
 
 def findings_table(findings: Iterable[Finding]) -> FittedTable:
     """What was tried before anything long begins."""
-    table = titled("tried with the robot of the file", names("item", "found"))
-    for finding in findings:
-        table.add_row(finding.item, finding.found or "fails")
-    return table
+    rows = ((each.item, each.found or "fails") for each in findings)
+    return titled("tried with the robot of the file", names("item", "found"), rows)
 
 
 def _agents_table(name: str, agents: Sequence[dict[str, Any]]) -> FittedTable:
@@ -67,16 +71,11 @@ def _agents_table(name: str, agents: Sequence[dict[str, Any]]) -> FittedTable:
         table.add_row(
             agent["name"],
             *([agent.get("who", "")] if several else []),
-            _model(agent),
+            f"{agent['sex']}, {rounded(agent['stature_m'])} m" if agent.get("sex") else agent["model"],
             *map(str, counts),
             agent["mass_kg"],
         )
     return table
-
-
-def _model(agent: dict[str, Any]) -> str:
-    """The model's name, or what a generated person is, where that tells it from others."""
-    return f"{agent['sex']}, {rounded(agent['stature_m'])} m" if agent.get("sex") else str(agent["model"])
 
 
 def _task_table(shown: dict[str, Any], constraints: Sequence[Constraint]) -> Table:
@@ -134,7 +133,9 @@ def _add_link(table: FittedTable, link: dict[str, Any]) -> None:
     figures = (rounded(link["density_kg_per_m3"]), rounded(link["mass_kg"]))
     for number, shape in enumerate(link["solids"] or [link["kind"]]):
         name, density, mass = (link["link"], *figures) if number == 0 else ("", "", "")
-        table.add_row(name, shape, _growth(link, number), density, mass)
+        longer = link["axis"] is not None and number in link["longer_solids"]
+        grows = _direction(link["axis"], link["about_centre"]) if longer else "-"
+        table.add_row(name, shape, grows, density, mass)
 
 
 def _parameters_table(parameters: Iterable[dict[str, Any]]) -> FittedTable:
@@ -145,14 +146,6 @@ def _parameters_table(parameters: Iterable[dict[str, Any]]) -> FittedTable:
         if "materials" in parameter:
             links = f"{links}; of {', '.join(parameter['materials'])}"
         table.add_row(parameter["name"], *bounds, links)
-    return table
-
-
-def _materials_table(materials: Iterable[dict[str, Any]]) -> FittedTable:
-    columns = [*names("material"), *numbers("density [kg/m^3]"), *names("source")]
-    table = titled("materials", columns)
-    for material in materials:
-        table.add_row(material["name"], material["density_kg_per_m3"], material["source"])
     return table
 
 
@@ -169,13 +162,6 @@ def _exempt_table(exempt: Mapping[str, Sequence[Mapping[str, Any]]]) -> FittedTa
     return table
 
 
-def _growth(link: dict[str, Any], solid: int) -> str:
-    """The direction in which a solid of a link grows, or a dash."""
-    if link["axis"] is None or solid not in link["longer_solids"]:
-        return "-"
-    return _direction(link["axis"], link["about_centre"])
-
-
 def _direction(axis: list[float], about_centre: bool) -> str:
     """The axis in words: `-z` where it is a main axis, its components otherwise; `+-` for both ways."""
     for name, component in zip("xyz", axis, strict=True):
@@ -183,3 +169,49 @@ def _direction(axis: list[float], about_centre: bool) -> str:
             return f"+-{name}" if about_centre else f"{'+' if component > 0.0 else '-'}{name}"
     components = f"({', '.join(f'{component:.2f}' for component in axis)})"
     return f"+-{components}" if about_centre else components
+
+
+def _portfolios(problem: DesignProblem, known: Precomputed) -> Iterator[tuple[str, StartPortfolio, str]]:
+    """Each portfolio with what it is for and the unit in which it misses."""
+    if not problem.start_portfolio:
+        return
+    yield "highest load", known.highest, "m"
+    yield "lowest load", known.lowest, "m"
+    own = {_named(f"posture at {case.task}", case): found for case, found in known.postures.items()}
+    lifts = {_named(f"lift from {case.task}", case): found for case, found in known.lifts.items()}
+    for name, found in {**own, **lifts}.items():
+        yield name, found, "100 N^2 m^2"
+
+
+def _named(subject: str, case: Case) -> str:
+    return ", ".join(part for part in (subject, case.label) if part)
+
+
+def starts_table(problem: DesignProblem, known: Precomputed) -> FittedTable:
+    """Coverage of each portfolio of starts."""
+    columns = [*names("problem"), *numbers("starts", "designs tried", "within 1 %", "worst miss")]
+    table = titled("start portfolios, and designs that they were not made from", columns)
+    for name, found, unit in _portfolios(problem, known):
+        coverage = found.coverage
+        share = f"{coverage.share:.1%}" if coverage.designs else "-"
+        miss = f"{rounded(coverage.worst)} {unit}" if coverage.good < coverage.designs else "none"
+        table.add_row(name, len(found.starts), coverage.designs, share, miss)
+    return table
+
+
+def starts_json(problem: DesignProblem, known: Precomputed) -> dict[str, Any]:
+    """The same as a JSON object; its shape is a promise."""
+    return {
+        "problem": problem.name,
+        "portfolios": [
+            {
+                "for": name,
+                "starts": len(found.starts),
+                "designs_tried": found.coverage.designs,
+                "designs_good": found.coverage.good,
+                "worst_miss": found.coverage.worst,
+                "unit": unit,
+            }
+            for name, found, unit in _portfolios(problem, known)
+        ],
+    }

@@ -154,9 +154,19 @@ def _shown(cell: Cell) -> Text:
     return Text(str(cell) if isinstance(cell, int) else rounded(cell))
 
 
-def titled(title: str, columns: Sequence[TableColumn], *, keys: int = 1, caption: str = "") -> FittedTable:
+def titled(
+    title: str,
+    columns: Sequence[TableColumn],
+    rows: Iterable[Sequence[Cell]] = (),
+    *,
+    keys: int = 1,
+    caption: str = "",
+) -> FittedTable:
     """A table under a title, unless that is empty; both title and caption are shown as they stand."""
-    return FittedTable(title, columns, keys, caption)
+    table = FittedTable(title, columns, keys, caption)
+    for row in rows:
+        table.add_row(*row)
+    return table
 
 
 def names(*headers: str) -> list[TableColumn]:

@@ -17,24 +17,22 @@ ValuesOf = Callable[[Sequence[AgentDetail]], dict[str, Sequence[float | None]]]
 """From an agent's postures to the values of each row of a table."""
 
 
-def worst_torques(cases: Sequence[CaseDetail]) -> FittedTable:
-    """The joints of largest torque: mean size of their torques, the largest one, and in which case."""
-    return _worst("joint", ("mean size", "worst"), cases, largest_torques)
+def moment_tables(cases: Sequence[CaseDetail]) -> tuple[FittedTable, FittedTable]:
+    """The largest joint torques [N m], and the sizes of the forces on hands and feet [N].
 
-
-def worst_forces(cases: Sequence[CaseDetail]) -> FittedTable:
-    """Sizes of the forces on hands and feet: the mean, the largest, and in which case."""
-    return _worst("contact", ("mean", "largest"), cases, contact_forces)
-
-
-def torques_by_height(cases: Sequence[CaseDetail]) -> FittedTable:
-    """The joints that have the largest torques, with their torques [N m] at each height."""
-    return _by_height("joint", cases, largest_torques)
-
-
-def forces_by_height(cases: Sequence[CaseDetail]) -> FittedTable:
-    """Sizes of the forces on hands and feet [N] at each height."""
-    return _by_height("contact", cases, contact_forces)
+    Where there is one person with one load, at each height; else the mean size, the largest value, and in
+    which case it is.
+    """
+    torques, forces = "largest joint torques [N m]", "contact forces [N]"
+    if any(detail.case.label for detail in cases):
+        return (
+            _worst(torques, "joint", ("mean size", "worst"), cases, largest_torques),
+            _worst(forces, "contact", ("mean", "largest"), cases, contact_forces),
+        )
+    return (
+        _by_height(torques, "joint", cases, largest_torques),
+        _by_height(forces, "contact", cases, contact_forces),
+    )
 
 
 def largest_torques(postures: Sequence[AgentDetail]) -> dict[str, Sequence[float | None]]:
@@ -62,19 +60,19 @@ def _rows(
             yield agent, name, values, name == [*found][-1]
 
 
-def _by_height(named: str, cases: Sequence[CaseDetail], values_of: ValuesOf) -> FittedTable:
+def _by_height(title: str, named: str, cases: Sequence[CaseDetail], values_of: ValuesOf) -> FittedTable:
     columns = [*names("agent", named), *numbers(*(detail.place for detail in cases))]
-    table = titled("", columns, keys=2)
+    table = titled(title, columns, keys=2)
     for agent, name, values, last in _rows(cases, values_of):
         table.add_row(agent, name, *values, end_section=last)
     return table
 
 
 def _worst(
-    named: str, measured: tuple[str, str], cases: Sequence[CaseDetail], values_of: ValuesOf
+    title: str, named: str, measured: tuple[str, str], cases: Sequence[CaseDetail], values_of: ValuesOf
 ) -> FittedTable:
     columns = [*names("agent", named), *numbers(*measured), *names("in the case")]
-    table = titled("", columns, keys=2)
+    table = titled(title, columns, keys=2)
     for agent, name, values, last in _rows(cases, values_of):
         known = [(value, detail) for value, detail in zip(values, cases, strict=True) if value is not None]
         worst, where = max(known, key=lambda found: abs(found[0]))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import accumulate
 from typing import Any
@@ -19,8 +19,8 @@ from evodesign.identity import code_digest
 from evodesign.nlp.blocks import Block, Repeated, stacked_limits
 from evodesign.nlp.codegen import Library
 from evodesign.nlp.compiler import Compiler, NotCompiled
-from evodesign.nlp.method import MethodName, SolverOptions
-from evodesign.nlp.native.calls import NOT_LOADED, CalledSolver, CSolution, method_library
+from evodesign.nlp.method import Ending, MethodName, SolverOptions
+from evodesign.nlp.native.calls import NOT_LOADED, CalledSolver, method_library
 from evodesign.nlp.native.cut_functions import in_pieces
 from evodesign.nlp.native.elimination import elimination
 from evodesign.nlp.native.lanes import LANES_SYMBOL, in_lanes, in_one_lane, lane_flags
@@ -101,8 +101,8 @@ class NativeMaker:
 
     def solve(
         self, options: SolverOptions, start: Array, bounds: tuple[Array, Array], parameters: Array
-    ) -> tuple[Array, CSolution]:
-        """All variables of the last iterate, and what else the C found; arguments as in `NativeBlocks`."""
+    ) -> Ending:
+        """Arguments and result as in `NativeBlocks`."""
         began, held = time.perf_counter(), np.asarray(bounds[0] == bounds[1])
         key = held.tobytes()
         if key not in self._made:
@@ -253,8 +253,8 @@ class NativeBlocks:
 
     def solve(
         self, options: SolverOptions, start: Array, bounds: tuple[Array, Array], parameters: Array
-    ) -> tuple[Array, CSolution]:
-        """All variables of the last iterate, and what else the C found.
+    ) -> Ending:
+        """The end of the solve, with all variables, multipliers of free ones' bounds, and no slopes.
 
         Args:
             options: of the solve.
@@ -266,10 +266,10 @@ class NativeBlocks:
             own[:] = np.clip(side[self._free], -UNBOUNDED, UNBOUNDED)
         for constants, image in zip(self._constants, self._fixed, strict=True):
             constants[:] = image @ start[self._held]
-        found = self._called.solve(options, start[self._free], parameters)
+        found, _ = self._called.solve(options, start[self._free], parameters)
         symbols = start.copy()
-        symbols[self._free] = found.variables
-        return symbols, found
+        symbols[self._free] = found.symbols
+        return replace(found, symbols=symbols)
 
 
 def _kept_by(part: Repeated, functions: BlockFunctions) -> int:

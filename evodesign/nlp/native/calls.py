@@ -10,14 +10,13 @@ import functools
 import os
 import weakref
 from collections.abc import Callable
-from dataclasses import dataclass
 from threading import Lock
 
 import numpy as np
 
 from evodesign.nlp.codegen import built, compiler_and_cache
 from evodesign.nlp.compiler import NotCompiled
-from evodesign.nlp.method import NEAR_BARRIER, NEAR_PUSH, SolverOptions
+from evodesign.nlp.method import NEAR_BARRIER, NEAR_PUSH, Ending, SolverOptions
 from evodesign.nlp.native.program_code import HERE, METHOD_FILES
 from evodesign.nlp.program import Array
 
@@ -72,30 +71,6 @@ class _Outcome(ctypes.Structure):
     )
 
 
-@dataclass(frozen=True, slots=True)
-class CSolution:
-    """The end of a solve as the C has it.
-
-    Args:
-        variables: of the last iterate.
-        cost: there.
-        word: IPOPT's for what ended the solve.
-        iterations: number of iterations, those of restorations too.
-        bounds, rows: multipliers, positive at an upper limit.
-        slopes: of the Lagrangian by parameters; zeros for a program of blocks.
-        fixed_slopes: and by variables that have one value only, likewise.
-    """
-
-    variables: Array
-    cost: float
-    word: str
-    iterations: int
-    bounds: Array
-    rows: Array
-    slopes: Array
-    fixed_slopes: Array
-
-
 class CalledSolver:
     """A problem in memory, ready to be solved. Solves share memory, so that threads take turns.
 
@@ -130,24 +105,29 @@ class CalledSolver:
         addresses = [vector.ctypes.data for vector in self._vectors]
         self._addresses = (solver, *addresses, ctypes.addressof(self._outcome))
 
-    def solve(self, options: SolverOptions, start: Array, parameters: Array) -> CSolution:
-        """Solve from a start, in the program's own units."""
+    def solve(self, options: SolverOptions, start: Array, parameters: Array) -> tuple[Ending, Array]:
+        """Solve from a start, in the program's own units.
+
+        Returns:
+            the end, with the C's variables; slopes of the Lagrangian by variables that have one value only.
+            Both slopes are zeros for a program of blocks.
+        """
         numbers, x, bounds, rows, slopes, fixed = self._vectors
         solver, *rest = self._addresses
         settings, outcome = _settings(options), self._outcome
         with self._alone:
             numbers[:], x[:] = parameters, start
             self._solve(solver, ctypes.addressof(settings), *rest)
-            return CSolution(
-                x.copy(),
-                outcome.cost,
-                WORDS[outcome.status],
-                outcome.iterations + outcome.restorations,
-                bounds.copy(),
-                rows.copy(),
-                slopes.copy(),
-                fixed.copy(),
+            ending = Ending(
+                symbols=x.copy(),
+                cost=outcome.cost,
+                word=WORDS[outcome.status],
+                iterations=outcome.iterations + outcome.restorations,
+                bounds=bounds.copy(),
+                rows=rows.copy(),
+                cost_slope=slopes.copy(),
             )
+            return ending, fixed.copy()
 
 
 @functools.cache

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import time
+from dataclasses import replace
 
 import casadi as ca
 import numpy as np
@@ -60,14 +61,14 @@ class NativeMethod:
     def solve(self, options: SolverOptions, start: Array, parameters: Array) -> Ending:
         """Solve from a start, in the program's own units."""
         began = time.perf_counter()
-        found = self._called.solve(options, start[self._free], parameters)
+        found, fixed_slopes = self._called.solve(options, start[self._free], parameters)
         if self._optimised:
             seconds = time.perf_counter() - began
             self._optimised = self._optimised.taken_over(self.functions, seconds, self._load)
         symbols, forces = np.empty(len(start)), np.empty(len(start))
-        symbols[self._free], symbols[self._fixed] = found.variables, self._values
-        forces[self._free], forces[self._fixed] = found.bounds, -found.fixed_slopes
-        return Ending(symbols, found.cost, found.word, found.iterations, forces, found.rows, found.slopes)
+        symbols[self._free], symbols[self._fixed] = found.symbols, self._values
+        forces[self._free], forces[self._fixed] = found.bounds, -fixed_slopes
+        return replace(found, symbols=symbols, bounds=forces)
 
 
 def native_method(program: Program, *, seldom: bool = False) -> NativeMethod | NotCompiled:

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import casadi as ca
@@ -33,14 +33,20 @@ from evodesign.posture.formulations.base import Setting, embodied, program_key
 from evodesign.posture.formulations.person import PersonProblem
 from evodesign.posture.load_cases import WorstCase, aggregated
 from evodesign.posture.parting import Parted, parted
-from evodesign.posture.results import CaseSolution, Instant, Neighbour
+from evodesign.posture.results import CaseSolution, Instant
 from evodesign.posture.seeking.budget import BUDGET
 from evodesign.posture.seeking.candidate import Candidate, Finishing, Trial, cheapest, checked
 from evodesign.posture.seeking.exchange import Exchange
 from evodesign.posture.seeking.landscape import REFUSED, Landscape
 from evodesign.posture.seeking.measured_starts import POSTURE, measured_starts
 from evodesign.posture.seeking.seeker import Seeker
-from evodesign.posture.seeking.starts import different_people, fixed_starts, named_starts, universal_starts
+from evodesign.posture.seeking.starts import (
+    NamedStart,
+    different_people,
+    fixed_starts,
+    named_starts,
+    universal_starts,
+)
 from evodesign.posture.solution_derivative import PostureDerivative, found_again
 from evodesign.posture.symmetry import Form
 from evodesign.posture.terms.load import any_load
@@ -213,10 +219,8 @@ class JointPostures:
                 break
         return replace(raw, status=Status.NUMERICAL_FAILURE, reason=REFUSED)
 
-    def solve(
-        self, design: Sequence[float], task: Task, portfolio: Sequence[Start], checker: Checker
-    ) -> Trial:
-        """What the portfolio leads to, or the fixed starts if none of it fits.
+    def starts(self, task: Task, portfolio: Sequence[Start] = ()) -> list[NamedStart]:
+        """Those of a portfolio, or the fixed ones if none of it fits.
 
         Beside a robot alone a measured person stands at the mean: in a T-pose the direction of the upper arm
         has no derivative.
@@ -224,8 +228,42 @@ class JointPostures:
         if portfolio and any(form.agent.measured is not None for form in self._forms):
             mean = {name: self._fixed(task)[0][name] for name in self._standing}
             portfolio = [{**mean, **start} for start in portfolio]
-        starts = named_starts(self._solver, portfolio, self._fixed(task))
-        return self._trial(design, task, starts, checker, self._people if portfolio else ())
+        return named_starts(self._solver, portfolio, self._fixed(task))
+
+    def start_at(self, known: Sequence[Instant], name: str = "neighbour") -> NamedStart:
+        """A start at known postures."""
+        return name, start_from(self._solver.program, self._forms, known)
+
+    def solve(
+        self,
+        design: Sequence[float],
+        task: Task,
+        starts: Sequence[NamedStart],
+        checker: Checker,
+        *,
+        people: bool = False,
+    ) -> Trial:
+        """The best checked posture that starts lead to.
+
+        Args:
+            design: one number per design parameter.
+            task: of the problem.
+            starts: of it.
+            checker: the independent check, made for this design.
+            people: whether people of other starts are put beside the best robot, too.
+        """
+        parameters = {"design": design, **self._beside(task)}
+        names, given = [name for name, _ in starts], [self._begun(start, parameters) for _, start in starts]
+        ends = [*zip(names, self._seeker.ends(parameters, given), strict=True)]
+        solved = [end for end in ends if end[1].status is Status.SOLVED]
+        ends += self._exchanged(parameters, solved)
+        if solved:
+            name, best = min(solved, key=lambda end: end[1].cost)
+            ends += [
+                (f"{name}, person {number}", self._solver.solve(parameters, {**best.values, **person}))
+                for number, person in enumerate(self._people if people else (), 1)
+            ]
+        return cheapest(self.name, ends, self._finishing(parameters, task, checker))
 
     def sketched(self, design: Sequence[float], task: Task, portfolio: Sequence[Start]) -> Trial:
         """What the first start leads to without disturbances and with no rows on that part bodies."""
@@ -240,29 +278,16 @@ class JointPostures:
         found = Candidate(attempt, simple._instants(raw, task), (), raw)
         return Trial((attempt,), found if found.solved else None)
 
-    def solve_beside(
-        self,
-        design: Sequence[float],
-        task: Task,
-        portfolio: Sequence[Start],
-        neighbour: Neighbour,
-        checker: Checker,
-    ) -> Trial:
-        """What the solution in a similar scene leads to, and the portfolio."""
-        known = self._start(neighbour.solution.instants)
-        others = named_starts(self._solver, portfolio, self._fixed(task))
-        return self._trial(design, task, [("neighbour", known), *others], checker)
-
     def cheaper(
         self, design: Sequence[float], task: Task, neighbour: CaseSolution, checker: Checker, most: float
     ) -> Trial:
         """What the solution in a similar scene leads to, where that promises to cost less than `most`."""
         parameters = {"design": design, **self._beside(task)}
-        start = self._begun(self._start(neighbour.instants), parameters)
-        raw = self._seeker.brief.solve(parameters, start)
+        name, start = self.start_at(neighbour.instants)
+        raw = self._seeker.brief.solve(parameters, self._begun(start, parameters))
         if raw.status is Status.SOLVED and raw.cost < most:
-            return self._cheapest(parameters, task, [("neighbour", raw)], checker)
-        return Trial((checked(self.name, "neighbour", raw, ()),), None)
+            return cheapest(self.name, [(name, raw)], self._finishing(parameters, task, checker))
+        return Trial((checked(self.name, name, raw, ()),), None)
 
     def followed(
         self, design: Sequence[float], solution: CaseSolution, raw: RawSolution
@@ -281,14 +306,9 @@ class JointPostures:
         found = self._candidate("neighbour", raw, task, checker)
         if found.solved:
             return Trial((found.attempt,), found)
-        parameters, ends = {"design": design, **self._beside(task)}, [("neighbour", raw)]
-        return self._cheapest(parameters, task, ends, checker, gain=np.inf)
-
-    def polish(
-        self, design: Sequence[float], task: Task, known: Sequence[Instant], checker: Checker
-    ) -> Trial:
-        """What known whole postures lead to."""
-        return self._trial(design, task, [("polish", self._start(known))], checker)
+        parameters = {"design": design, **self._beside(task)}
+        finishing = self._finishing(parameters, task, checker, gain=np.inf)
+        return cheapest(self.name, [("neighbour", raw)], finishing)
 
     def derivative(
         self, design: Sequence[float], solution: CaseSolution, *, exact: bool = True
@@ -328,34 +348,10 @@ class JointPostures:
         layout, scene = layout_of(self._solver.program), self._setting.scene
         return instants_of(layout, self._forms, scene, raw.values, task.times)
 
-    def _start(self, known: Sequence[Instant]) -> Start:
-        return start_from(self._solver.program, self._forms, known)
-
     def _beside(self, task: Task) -> Mapping[str, Any]:
         """The parameters beside the design."""
         scene = self._setting.scene
         return {**task.given, "mass": scene.payload.mass, **person_parameters(scene)}
-
-    def _trial(
-        self,
-        design: Sequence[float],
-        task: Task,
-        starts: Sequence[tuple[str, Start]],
-        checker: Checker,
-        people: Sequence[Start] = (),
-    ) -> Trial:
-        parameters = {"design": design, **self._beside(task)}
-        names, given = [name for name, _ in starts], [self._begun(start, parameters) for _, start in starts]
-        ends = [*zip(names, self._seeker.ends(parameters, given), strict=True)]
-        solved = [end for end in ends if end[1].status is Status.SOLVED]
-        ends += self._exchanged(parameters, solved)
-        if solved:
-            name, best = min(solved, key=lambda end: end[1].cost)
-            ends += [
-                (f"{name}, person {number}", self._solver.solve(parameters, {**best.values, **person}))
-                for number, person in enumerate(people, 1)
-            ]
-        return self._cheapest(parameters, task, ends, checker)
 
     def _exchanged(
         self, parameters: Mapping[str, Any], solved: Sequence[tuple[str, RawSolution]]
@@ -371,23 +367,18 @@ class JointPostures:
             (f"{name}, person of {other}", self._solver.solve(parameters, self._begun(start, parameters)))
         ]
 
-    def _cheapest(
-        self,
-        parameters: Mapping[str, Any],
-        task: Task,
-        ends: Sequence[tuple[str, RawSolution]],
-        checker: Checker,
-        gain: float = 0.0,
-    ) -> Trial:
-        """The best of where starts led, settled with a gain and checked."""
-        finishing = Finishing(
-            lambda raw, last: self._seeker.settled(parameters, raw, gain, patient=last),
-            lambda raw, least: self._seeker.bettered(parameters, raw, max(gain, least)),
-            lambda start, raw: self._candidate(start, raw, task, checker),
-            lambda raw: self.cleared(parameters["design"], raw, task, checker),
-            lambda raw: self._seeker.continued(parameters, raw),
+    def _finishing(
+        self, parameters: Mapping[str, Any], task: Task, checker: Checker, gain: float = 0.0
+    ) -> Finishing:
+        """How ends are settled with a gain, and checked."""
+        seeker = self._seeker
+        return Finishing(
+            settle=partial(seeker.settled, parameters, gain=gain),
+            better=partial(seeker.bettered, parameters),
+            finish=lambda start, raw: self._candidate(start, raw, task, checker),
+            clear=lambda raw: self.cleared(parameters["design"], raw, task, checker),
+            go_on=partial(seeker.continued, parameters),
         )
-        return cheapest(self.name, ends, finishing)
 
     def _candidate(self, start: str, raw: RawSolution, task: Task, checker: Checker) -> Candidate:
         """A solve that succeeded, after the check."""

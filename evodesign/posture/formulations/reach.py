@@ -205,14 +205,13 @@ class ReachProblem:
         return Reach(lowest, highest, status, reason, or_lower)
 
     def solves(self, design: Sequence[float], sense: float) -> list[RawSolution]:
-        """The result of every start in one sense; that of the latest design is at hand."""
-        latest = self._latest.get(sense)
-        if latest is None or latest[0] != tuple(design):
-            latest = self._latest[sense] = tuple(design), self._solves(design, sense)
-        return latest[1]
+        """The result of every start in one sense; that of the latest design is at hand.
 
-    def _solves(self, design: Sequence[float], sense: float) -> list[RawSolution]:
-        """From the portfolio, or fixed starts; a load as low as is asked for is held where the highest is."""
+        Starts are the portfolio, or fixed ones; a load as low as is asked for is held where the highest is.
+        """
+        latest = self._latest.get(sense)
+        if latest is not None and latest[0] == tuple(design):
+            return latest[1]
         starts = [filled(start, self.program) for start in self._starts[sense] or self._fixed]
         parameters = {"design": design, **self._beside(sense)}
         seeker, ways = self._seeker, [starts, [*self._fixed]] if self._starts[sense] else [starts]
@@ -222,9 +221,12 @@ class ReachProblem:
         for way in ways:
             found = _best_settled(seeker, parameters, way, sense)
             if any(raw.status is Status.SOLVED for raw in found):
-                return found
-        native = seeker.solver.native
-        return _best_settled(seeker.by_ipopt, parameters, starts, sense) if native else found
+                break
+        else:
+            if seeker.solver.native:
+                found = _best_settled(seeker.by_ipopt, parameters, starts, sense)
+        self._latest[sense] = tuple(design), found
+        return found
 
     def extreme(self, design: Sequence[float], sense: float) -> tuple[float | None, RawSolution]:
         """The extreme height in one sense (-1 highest, 1 lowest) and the solve that found it.

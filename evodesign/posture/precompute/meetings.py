@@ -120,7 +120,7 @@ class _Finder:
         for values in self._designs:
             checker = Checker(scene, *with_hardware(models, space.resized(scene.designed_tree, values)))
             for task in tasks:
-                best = problem.solve(values, task, (), checker).best
+                best = problem.solve(values, task, problem.starts(task), checker).best
                 for instant, height in zip(best.instants if best else (), task.heights, strict=False):
                     found |= self._near(values, instant.postures, height).keys()
         return found

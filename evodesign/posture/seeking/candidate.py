@@ -91,14 +91,14 @@ class Finishing:
 
     Args:
         settle: goes on from a solution that violates rows which were switched off; what it gives costs more.
-            It is told whether no other end is left: where one is, what takes long is given up.
+            Where no other end is left it is `patient`: what takes long is not given up.
         better: what a solution leads to that may cost less by more than so much.
         finish: makes a candidate of a named solve that succeeded.
         clear: what a solution leads to whose true bodies are in each other.
         go_on: what a solve that was given up early leads to in as many iterations again; None where none was.
     """
 
-    settle: Callable[[RawSolution, bool], RawSolution]
+    settle: Callable[..., RawSolution]
     better: Callable[[RawSolution, float], RawSolution]
     finish: Callable[[str, RawSolution], Candidate]
     clear: Callable[[RawSolution], RawSolution]
@@ -127,7 +127,7 @@ def cheapest(formulation: str, ends: Sequence[tuple[str, RawSolution]], finishin
         place = min(left, key=lambda place: (raws[place].cost, place))
         if place not in settled:
             settled.add(place)
-            raws[place] = finishing.settle(raws[place], len(left) == 1)
+            raws[place] = finishing.settle(raws[place], patient=len(left) == 1)
             attempts[place] = checked(formulation, starts[place], raws[place], ())
             is_left = raws[place].status is Status.SOLVED
         else:
@@ -153,9 +153,9 @@ def cheapest(formulation: str, ends: Sequence[tuple[str, RawSolution]], finishin
         raw, found = raws[place], raws[place]
         least, most = np.multiply(BUDGET.promising, best.raw.cost)
         if go_on is not None and place in given_up and least < raw.cost < most:
-            found = finishing.settle(go_on(raw), False)
+            found = finishing.settle(go_on(raw), patient=False)
         elif best.raw.cost > BUDGET.far * bound:
-            found = finishing.settle(raw, False)
+            found = finishing.settle(raw, patient=False)
         elif BUDGET.same * best.raw.cost < raw.cost - best.raw.cost <= BUDGET.may_gain * best.raw.cost:
             found = finishing.better(raw, raw.cost - best.raw.cost)
         if found.status is Status.SOLVED and found.cost < best.raw.cost:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -12,8 +12,8 @@ import numpy as np
 
 from evodesign.nlp.program import Array, Program, Start, Switches
 from evodesign.nlp.solver import RawSolution, Solver, has_any
-from evodesign.posture.seeking import settling
 from evodesign.posture.seeking.budget import BUDGET
+from evodesign.posture.seeking.settling import UNSETTLED, Switched
 from evodesign.records import Status
 
 Parameters = Mapping[str, Any]
@@ -78,16 +78,14 @@ class Seeker:
         switches, solver = self.program.switches, self.solver if patient else self.brief
         if switches is None:
             return raw
-        found = settling.parted(_Switched(solver, switches, parameters), raw)
-        return self.bettered(parameters, found, gain)
+        return self.bettered(parameters, _RawSolves(solver, switches, parameters).parted(raw), gain)
 
     def bettered(self, parameters: Parameters, found: RawSolution, gain: float) -> RawSolution:
         """A solution whose rows are kept in better ways, as long as it gains more by them than `gain`."""
         switches = self.program.switches
         if switches is None:
             return found
-        switched = _Switched(self.solver, switches, parameters)
-        return settling.bettered(switched, found, BUDGET.part_better, gain)
+        return _RawSolves(self.solver, switches, parameters).bettered(found, BUDGET.part_better, gain)
 
     def needed(self, raw: RawSolution) -> Start:
         """A solution's values without the rows on that do not hold it: for solves that begin close to it."""
@@ -98,13 +96,11 @@ class Seeker:
         return {**raw.values, **on}
 
 
-@dataclass(frozen=True, slots=True)
-class _Switched:
-    """Solves for some parameters of a program with switches, as `settling.Switched` has them."""
+class _RawSolves(Switched[RawSolution, Start]):
+    """Solves of a program with switches, for some parameters."""
 
-    solver: Solver
-    switches: Switches
-    parameters: Parameters
+    def __init__(self, solver: Solver, switches: Switches, parameters: Parameters) -> None:
+        self.solver, self.switches, self.parameters = solver, switches, parameters
 
     def is_solved(self, solve: RawSolution) -> bool:
         return solve.status is Status.SOLVED
@@ -118,24 +114,24 @@ class _Switched:
     def began_with_rows(self, solve: RawSolution) -> bool:
         return has_any(self.switches.names, solve.start)
 
-    def violated(self, solve: RawSolution) -> RawSolution | None:
-        on = self.switches.violated(solve.values, self.parameters)
-        return self._further(self.solver, solve, on) if on else None
+    def violated(self, solve: RawSolution) -> Start | None:
+        return self.switches.violated(solve.values, self.parameters) or None
+
+    def better(self, solve: RawSolution, least: float) -> Start | None:
+        return (
+            self.switches.better(solve.values, self.parameters, solve.multipliers.constraints, least) or None
+        )
+
+    def further(self, solve: RawSolution, rows: Start, *, near: bool = False) -> RawSolution:
+        solver = self.solver.near if near else self.solver
+        return _after(solve, solver.solve(self.parameters, {**solve.values, **rows}))
 
     def anew(self, first: RawSolution, found: RawSolution) -> RawSolution:
         on = self.switches.begun(first.start, self.parameters, found.values)
         return self.solver.solve(self.parameters, {**first.start, **on})
 
-    def better(self, solve: RawSolution, least: float) -> RawSolution | None:
-        on = self.switches.better(solve.values, self.parameters, solve.multipliers.constraints, least)
-        return self._further(self.solver.near, solve, on) if on else None
-
     def unsettled(self, solve: RawSolution) -> RawSolution:
-        return replace(solve, status=Status.NUMERICAL_FAILURE, reason=settling.UNSETTLED)
-
-    def _further(self, solver: Solver, before: RawSolution, on: Start) -> RawSolution:
-        """The solve that goes on with rows switched on."""
-        return _after(before, solver.solve(self.parameters, {**before.values, **on}))
+        return replace(solve, status=Status.NUMERICAL_FAILURE, reason=UNSETTLED)
 
 
 def _after(first: RawSolution, then: RawSolution) -> RawSolution:

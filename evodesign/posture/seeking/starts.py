@@ -13,6 +13,9 @@ from evodesign.posture.assemble import Slot
 from evodesign.posture.results import Array
 from evodesign.posture.seeking.budget import BUDGET
 
+NamedStart = tuple[str, Start]
+"""A start with its name in results."""
+
 SHARES = ((0.5, 0.5), (1.0, 0.5))
 """Fixed starts, as the share of the way from zero to the middle of each joint's range: of robots, of people.
 
@@ -62,9 +65,7 @@ def universal_starts(program: Program, people: Sequence[Start] = ()) -> tuple[St
     )
 
 
-def named_starts(
-    solver: Solver, portfolio: Sequence[Start], fixed: Sequence[Start]
-) -> list[tuple[str, Start]]:
+def named_starts(solver: Solver, portfolio: Sequence[Start], fixed: Sequence[Start]) -> list[NamedStart]:
     """Where a program begins, each start with its name in results.
 
     Args:

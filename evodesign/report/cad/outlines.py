@@ -17,7 +17,7 @@ from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
 from evodesign.report.cad.parts import Parts
 from evodesign.tree.frames import link_frames
-from evodesign.tree.mesh_write import has_hull, vertices_of
+from evodesign.tree.mesh_write import has_hull, in_frame, vertices_of
 
 Array = NDArray[np.float64]
 
@@ -116,10 +116,3 @@ def points_on(shape: Shape, frame_from_shape: Placement) -> Array:
             signs = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
             points = signs * np.array(shape.sides, float) / 2.0
     return in_frame(points, frame_from_shape)
-
-
-def in_frame(points: Array, outer_from_inner: Placement) -> Array:
-    """Points of shape (n, 3) in an outer frame."""
-    turn, offset = np.array(outer_from_inner.rotation, float), np.array(outer_from_inner.translation, float)
-    found: Array = points @ turn.T + offset
-    return found

@@ -125,7 +125,7 @@ def parts_of(tree: Tree, materials: Mapping[str, str]) -> Parts:
     frames = link_frames(tree, Placement(), {})
     stems = _stems(link.name for link in tree.links)
     solid = [link for link in tree.links if link.solids]
-    shown = {link.name: stems[link.name] for link in tree.links if not link.solids and _is_mesh(link)}
+    shown = {link.name: stems[link.name] for link in tree.links if link.shown and not link.solids}
     motors, axes = [], []
     for joint in tree.joints:
         if joint.kind is JointKind.FIXED:
@@ -160,10 +160,6 @@ def _along(actuator: Actuator) -> Placement:
     if actuator.mounting is None:
         return Placement()
     return Placement(translation=(0.0, 0.0, actuator.mounting.share * float(actuator.size[1])))
-
-
-def _is_mesh(link: Link) -> bool:
-    return bool(link.meshes) and all(mesh.surface is not None for mesh in link.meshes)
 
 
 def _stems(names: Iterable[str]) -> dict[str, str]:

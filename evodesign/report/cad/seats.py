@@ -24,8 +24,9 @@ from numpy.typing import NDArray
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Shape, Solid, Sphere
 from evodesign.report.cad import kernel
-from evodesign.report.cad.outlines import Array, in_frame
+from evodesign.report.cad.outlines import Array
 from evodesign.report.cad.parts import LinkPart, MotorPart, Parts
+from evodesign.tree.mesh_write import in_frame
 
 LIP = 0.15
 """Least width of a flange, as a share of the bore's radius."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
 import msgspec
@@ -172,3 +173,14 @@ def _about(design: ExportedDesign) -> dict[str, str]:
         "design": str(evaluation.number),
         "time": time_scale(design.cases),
     }
+
+
+def refuse_without_cad() -> None:
+    """Refuse to write CAD files without Open CASCADE.
+
+    Raises:
+        InputError: it is not installed.
+    """
+    if find_spec("OCP") is None:
+        wanted = "Open CASCADE installed (pip install 'evodesign[cad]')"
+        raise InputError("--cad", "", wanted, "no package 'OCP'")

@@ -82,12 +82,13 @@ def readme_text(design: ExportedDesign, files: Sequence[str], left_out: Mapping[
         left_out: why a file is missing, by its name.
     """
     evaluation = design.evaluation
-    objectives = (_objective(each, evaluation.assessment.objectives) for each in design.header.objectives)
-    bounds = (_constraint(each, evaluation.assessment.constrained) for each in design.header.constrained)
+    values, constrained = evaluation.assessment.objectives, evaluation.assessment.constrained
+    objectives = (_quantity(each, each.sense, values) for each in design.header.objectives)
+    bounds = (_quantity(each, bounds_text(each), constrained) for each in design.header.constrained)
     materials = materials_of(design.header.parameters, evaluation.assessment.design)
     made_of = (f"- {_code(name)}: {_code(material)}" for name, material in materials.items())
     missing = (f"- no `{name}`: {_code(reason)}" for name, reason in left_out.items())
-    texts = _texts(design, files)
+    texts = {name: text.replace("\n", "\n  ") for name, text in _texts(design, files).items()}
     shown = dict.fromkeys(name.partition("/")[0] for name in files)
     parts = [
         f"# Design {evaluation.number} of {_code(design.header.problem_name)}",
@@ -95,7 +96,7 @@ def readme_text(design: ExportedDesign, files: Sequence[str], left_out: Mapping[
         "\n".join((*objectives, *bounds, *made_of)),
         *(f"Note: {_code(note)}" for note in design.notes),
         "## Files",
-        "\n".join((*(f"- `{name}`: {_indented(texts[name])}" for name in shown), *missing)),
+        "\n".join((*(f"- `{name}`: {texts[name]}" for name in shown), *missing)),
         *_cases(design),
         "## Frames and units",
         FRAMES + _scales(),
@@ -163,20 +164,10 @@ def _outcome(design: ExportedDesign) -> str:
     return f"it is not feasible: {_code(why)}"
 
 
-def _objective(objective: Objective, values: Mapping[str, float]) -> str:
-    value = values.get(objective.name)
-    shown = "none" if value is None else f"{value!r} {objective.unit}"
-    return f"- {_code(objective.name)} ({objective.sense}): {shown}"
-
-
-def _constraint(constraint: Constraint, values: Mapping[str, float]) -> str:
-    value = values.get(constraint.name)
-    shown = "none" if value is None else f"{value!r} {constraint.unit}"
-    return f"- {_code(constraint.name)} ({bounds_text(constraint)}): {shown}"
-
-
-def _indented(text: str) -> str:
-    return text.replace("\n", "\n  ")
+def _quantity(each: Objective | Constraint, wanted: str, values: Mapping[str, float]) -> str:
+    value = values.get(each.name)
+    shown = "none" if value is None else f"{value!r} {each.unit}"
+    return f"- {_code(each.name)} ({wanted}): {shown}"
 
 
 def _code(text: str) -> str:

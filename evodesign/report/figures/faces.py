@@ -1,4 +1,4 @@
-"""The flat faces of shapes, round ones as polyhedra."""
+"""The flat faces of shapes, round ones as polyhedra, and the triangles of meshes."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from evodesign.body.placement import Placement, Vector
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
+from evodesign.tree.mesh_write import in_frame, triangles_of, vertices_of
+from evodesign.tree.model import Mesh
 
 Array = NDArray[np.float64]
 
@@ -33,11 +35,9 @@ class Face:
 
 def faces_of(shape: Shape, world_from_shape: Placement) -> list[Face]:
     """The faces of a shape of numbers, round ones as polyhedra."""
-    rotation: Array = np.array(world_from_shape.rotation)
-    origin: Array = np.array(world_from_shape.translation)
     faces = []
     for corners in _outlines(shape):
-        placed = corners @ rotation.T + origin
+        placed = in_frame(corners, world_from_shape)
         normal = _normal(placed)
         if normal is not None:
             faces.append(Face(placed, normal))
@@ -89,3 +89,24 @@ def _normal(corners: Array) -> Array | None:
     area = np.array([y @ next_z - z @ next_y, z @ next_x - x @ next_z, x @ next_y - y @ next_x])
     size = math.hypot(*area)
     return None if size < 1e-12 else area / size
+
+
+def seen_triangles(mesh: Mesh, world_from_link: Placement, towards: Array) -> tuple[Array, Array]:
+    """Corners [m], shape (m, 3, 3), and unit normals, shape (m, 3), of the triangles that face a camera.
+
+    All at once: a robot has tens of thousands of them. Of a mesh that is not watertight both sides are seen:
+    its triangles need not agree on what is outside.
+
+    Args:
+        mesh: with its triangles.
+        world_from_link: of the link that it shows.
+        towards: unit vector to the camera, in the world.
+    """
+    corners = in_frame(vertices_of(mesh), world_from_link)[triangles_of(mesh)]
+    areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    facing = areas @ towards
+    if not mesh.encloses:
+        areas, facing = areas * np.sign(facing)[:, None], np.abs(facing)
+    seen = facing > 0.0
+    normals = areas[seen] / np.linalg.norm(areas[seen], axis=1, keepdims=True)
+    return corners[seen], normals

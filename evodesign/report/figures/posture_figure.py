@@ -29,10 +29,10 @@ from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
 from evodesign.mechanics.agent import HUMAN, ROBOT
-from evodesign.report.figures.faces import faces_of
-from evodesign.report.figures.mesh_faces import in_world, seen_triangles
+from evodesign.report.figures.faces import faces_of, seen_triangles
 from evodesign.report.figures.paint import AGENTS, GROUND_FORCE, HAND_FORCE, INK, PALE, new_figure
 from evodesign.report.scene_models import LOAD, ContactWrench, PlacedScene
+from evodesign.tree.mesh_write import in_frame, vertices_of
 
 Array = NDArray[np.float64]
 
@@ -90,11 +90,6 @@ class Camera:
         right = np.array([-math.sin(self.azimuth), math.cos(self.azimuth), 0.0])
         return np.array([right, np.cross(towards, right), towards])
 
-    @property
-    def is_level(self) -> bool:
-        """Whether heights are seen at their true length."""
-        return self.elevation == 0.0
-
     def seen(self, points: Array) -> Array:
         """Right, up and nearness [m] of points, shape (n, 3) to (n, 3)."""
         found: Array = np.asarray(points) @ self.axes.T
@@ -129,7 +124,7 @@ def posture_figure(stages: Sequence[PlacedScene], title: str, camera: Camera | N
             panel.set_title(_heading(stage), fontsize=10, color=INK, parse_math=False)
     for place, panel in enumerate(axes.flat):
         panel.set(aspect="equal", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
-        if view.is_level and stages:
+        if view.elevation == 0.0 and stages:  # heights are seen at their true length
             _scale(panel, labelled=place % panels == 0)
         else:
             panel.set_axis_off()
@@ -239,7 +234,7 @@ def _limits(stages: Sequence[PlacedScene], view: Camera) -> tuple[Array, Array]:
     points = [np.array([(x, y, 0.0) for x, y in FLOOR])]
     for stage in stages:
         points += [face.corners for _, shape, place in stage.solids for face in faces_of(shape, place)]
-        points += [in_world(mesh, place) for _, mesh, place in stage.meshes]
+        points += [in_frame(vertices_of(mesh), place) for _, mesh, place in stage.meshes]
     seen = view.seen(np.vstack(points))[:, :2]
     return seen.min(axis=0) - 0.03, seen.max(axis=0) + 0.03
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -112,8 +112,9 @@ class LiveRun:
                 born.append(record)
         if self._header is not None and born:
             self._sort(self._header, born)
-            for bounds in self._bounds_beyond(self._header, born):
-                self._exceeded[bounds] = self._exceeded.get(bounds, 0) + 1
+            for evaluation in born:
+                for bounds in exceeded_bounds(self._header.constrained, evaluation.assessment):
+                    self._exceeded[bounds] = self._exceeded.get(bounds, 0) + 1
 
     @property
     def state(self) -> LiveState | None:
@@ -149,11 +150,6 @@ class LiveRun:
         if status is not Status.SOLVED:
             self._causes[status] = self._causes.get(status, 0) + 1
         self._times = [*self._times[-PACE_OVER:], written]
-
-    @staticmethod
-    def _bounds_beyond(header: RunHeader, born: Sequence[Evaluation]) -> Iterator[str]:
-        for evaluation in born:
-            yield from exceeded_bounds(header.constrained, evaluation.assessment)
 
     def _sort(self, header: RunHeader, born: Sequence[Evaluation]) -> None:
         """Put new evaluations on the front or into the sample of the others."""

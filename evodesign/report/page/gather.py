@@ -32,6 +32,7 @@ from evodesign.problem.notes import assumed_heights
 from evodesign.records import Detail, Evaluation, Hold, Lift, Task, evenly
 from evodesign.report.page import marks
 from evodesign.report.page.bodies import bodies, changes
+from evodesign.report.page.card import StaticTorques, effort_content, hardware_content, over_people
 from evodesign.report.page.content import (
     CauseContent,
     ClearanceContent,
@@ -42,12 +43,8 @@ from evodesign.report.page.content import (
     StopContent,
 )
 from evodesign.report.page.downloads import Downloads, rounded
-from evodesign.report.page.effort import effort_content
-from evodesign.report.page.hardware import hardware_content
 from evodesign.report.page.marks import MOST_POINTS, chosen_points, points
-from evodesign.report.page.over_people import over_people
 from evodesign.report.page.postures import MOMENTS, details_shown, shown_cases
-from evodesign.report.page.static_torques import StaticTorques
 from evodesign.report.subset import subsample
 from evodesign.runlog.run import RunLog
 from evodesign.runlog.sampled_file import read_sampled
@@ -110,12 +107,7 @@ def page_content(run: RunLog, asked: Collection[int] = ()) -> Content:
         bodies=None if problem is None else bodies(problem),
         words={} if problem is None else _words(problem),
         urdf="" if problem is None else urdf_text(problem.scene.designed_tree),
-        designs=_with_slices(
-            _designs(run, problem, shown, opened, marked, on_front),
-            run,
-            found,
-            {mark.number for mark in marked},
-        ),
+        designs=_designs(run, problem, found, shown, opened, marked, on_front),
         notes=(
             *run.notes,
             *notes,
@@ -221,14 +213,15 @@ def _thinned_note(run: RunLog, shown: Sequence[Evaluation]) -> tuple[str, ...]:
 def _designs(
     run: RunLog,
     problem: DesignProblem | None,
+    found: Importance,
     shown: Sequence[Evaluation],
     opened: dict[int, Detail],
     marked: Sequence[Mark],
     on_front: Collection[int],
 ) -> dict[int, DesignContent]:
-    wanted = {*on_front, *(mark.number for mark in marked)}
-    known = None if problem is None else _Known.of(problem, run)
+    """The front and the marked designs, these with slices through them."""
     recorded = {mark.number for mark in marked}
+    known = None if problem is None else _Known.of(problem, run)
     header = run.header
     quantities = [*(each.name for each in header.objectives), *(each.name for each in header.constrained)]
     return {
@@ -236,22 +229,12 @@ def _designs(
             _design(known, evaluation, opened.get(evaluation.number), recorded),
             people=over_people(quantities, evaluation.assessment.cases),
             weakest=evaluation.assessment.weakest_pushes,
+            slices=to_builtins(slices(found, header.parameters, evaluation))
+            if evaluation.number in recorded
+            else [],
         )
         for evaluation in shown
-        if evaluation.number in wanted
-    }
-
-
-def _with_slices(
-    designs: dict[int, DesignContent], run: RunLog, found: Importance, marked: Collection[int]
-) -> dict[int, DesignContent]:
-    """The designs, those that are marked with slices through them."""
-    through = {each.number: each for each in run.evaluations if each.number in marked}
-    return {
-        number: replace(each, slices=to_builtins(slices(found, run.header.parameters, through[number])))
-        if number in through
-        else each
-        for number, each in designs.items()
+        if evaluation.number in recorded or evaluation.number in on_front
     }
 
 

@@ -8,7 +8,7 @@ Source: layouts that Foxglove Studio exports (`configById`, `layout`, `globalVar
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, Final
 
 from evodesign.records import CaseDetail
@@ -107,9 +107,11 @@ def _scene(scene_set: SceneSet, cases: Sequence[CaseDetail]) -> dict[str, Any]:
 
 def _plot(agent: str, cases: Sequence[CaseDetail]) -> dict[str, Any]:
     torques = [detail.agents[agent].torques_n_m for case in cases for detail in case.few_moments]
+    nameable = [joint for joint in ranked_joints(torques) if not set(joint) & set('"\\{}')]  # in a path
+    time = time_scale(cases) if several(cases) else "time [s] = 10 x height [m]"
     return {
-        "title": f"{agent}: joint torques [N m]; {_meaning_of_time(cases)}",
-        "paths": [_path(agent, joint) for joint in _plotted(torques)],
+        "title": f"{agent}: joint torques [N m]; {time}",
+        "paths": [_path(agent, joint) for joint in nameable[:JOINTS_SHOWN]],
         "showLegend": True,
         "legendDisplay": "floating",
         "showPlotValuesInLegend": True,
@@ -121,10 +123,6 @@ def _plot(agent: str, cases: Sequence[CaseDetail]) -> dict[str, Any]:
     }
 
 
-def _meaning_of_time(cases: Sequence[CaseDetail]) -> str:
-    return time_scale(cases) if several(cases) else "time [s] = 10 x height [m]"
-
-
 def _path(agent: str, joint: str) -> dict[str, Any]:
     value = f'/joint_states/{agent}.joints[:]{{name=="{joint}"}}.effort'
     return {
@@ -134,8 +132,3 @@ def _path(agent: str, joint: str) -> dict[str, Any]:
         "timestampMethod": "receiveTime",
         "showLine": True,
     }
-
-
-def _plotted(torques: Sequence[Mapping[str, float]]) -> list[str]:
-    """The joints of largest torque, but for names that a message path cannot hold."""
-    return [joint for joint in ranked_joints(torques) if not set(joint) & set('"\\{}')][:JOINTS_SHOWN]

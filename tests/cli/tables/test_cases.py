@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from io import StringIO
 
 from msgspec import structs
@@ -11,6 +12,8 @@ from rich.table import Table
 
 from evodesign.cli.tables.cases import cases_table, summary_table
 from evodesign.records import Assessment, Case, CaseOutcome, Hold, Status
+
+CASES = partial(cases_table, title="")
 
 
 def outcome(human: str = "", payload: str = "") -> CaseOutcome:
@@ -25,30 +28,30 @@ def outcome(human: str = "", payload: str = "") -> CaseOutcome:
     )
 
 
-def printed(table: Callable[[Assessment, str], Table], *heights: CaseOutcome) -> str:
+def printed(table: Callable[[Assessment], Table], *heights: CaseOutcome) -> str:
     assessment = Assessment(
         design={}, objectives={}, violation=0.0, status=Status.SOLVED, reason="solved", cases=heights
     )
     out = StringIO()
-    Console(file=out, width=110).print(table(assessment, ""))
+    Console(file=out, width=110).print(table(assessment))
     return out.getvalue()
 
 
 def test_who_holds_what_is_named_where_there_are_several() -> None:
-    text = printed(cases_table, outcome("male P5", "5 kg"), outcome("[red]tall"))
+    text = printed(CASES, outcome("male P5", "5 kg"), outcome("[red]tall"))
     assert "person" in text
     assert "│ male P5   │ 5 kg │" in text
     assert "│ [red]tall │" in text
 
 
 def test_one_person_with_one_load_needs_no_name() -> None:
-    assert "person" not in printed(cases_table, outcome())
+    assert "person" not in printed(CASES, outcome())
 
 
 def test_torques_under_disturbances_stand_below_their_case_and_count_in_the_summary() -> None:
     pushed = structs.replace(outcome("tall", "5 kg"), disturbed={"push": {"robot": 4.0, "human": 8.0}})
     short = outcome("short", "5 kg")
-    text = printed(cases_table, pushed, short)
+    text = printed(CASES, pushed, short)
     assert [line.split() for line in text.splitlines() if "under 'push'" in line] == [
         ["│", "│", "│", "│", "4", "│", "8", "│", "│", "under", "'push'", "│"]
     ]

@@ -8,7 +8,7 @@ from io import StringIO
 import pytest
 from rich.console import Console
 
-from evodesign.cli.tables.effort import effort_table
+from evodesign.cli.tables.people import effort_table
 from evodesign.human.back import ACTION_LIMIT
 from evodesign.human.endurance import endurance
 from evodesign.quantities.ergonomics import Ergonomics, ergonomics
@@ -19,7 +19,7 @@ from tests.quantities.test_ergonomics import PERSON, posture
 def printed(asked: Ergonomics, width: int = 110, person: str = "") -> str:
     out = StringIO()
     case = Case(person=person, task=Hold(height_m=0.8))
-    Console(file=out, width=width).print(effort_table([(case, asked)], titled_too=True))
+    Console(file=out, width=width).print(effort_table([(case, asked)]))
     return out.getvalue()
 
 
@@ -61,7 +61,7 @@ def test_of_several_people_the_hardest_cases_of_each_are_shown() -> None:
         for height in (0.8, 1.0, 1.2)
     ]
     out = StringIO()
-    Console(file=out, width=110).print(effort_table(cases, titled_too=True))
+    Console(file=out, width=110).print(effort_table(cases))
     text = out.getvalue()
     assert "each person's hardest postures" in text
     assert "short, 1 m" in text

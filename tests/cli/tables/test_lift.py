@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from evodesign.cli.output import console
-from evodesign.cli.tables.lift import lift_tables
+from evodesign.cli.tables.simulation import lift_tables
 from evodesign.motion.solution import AgentEffort, LiftSolution
 from evodesign.records import Status
 from evodesign.tasks import Lift

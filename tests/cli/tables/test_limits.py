@@ -6,7 +6,7 @@ import io
 
 from rich.console import Console
 
-from evodesign.cli.tables.limits import TITLE, limits_table
+from evodesign.cli.tables.design import limits_table
 from evodesign.records import ActiveLimit, Case, CaseDetail, Hold, InstantDetail
 
 INSTANT = (InstantDetail(time_s=0.0, agents={}),)
@@ -20,7 +20,7 @@ def limit(name: str, price: float, agent: str = "human", *, unit: str = "m", par
 
 def printed(cases: list[CaseDetail], width: int = 80) -> list[str]:
     shown = io.StringIO()
-    Console(file=shown, width=width).print(limits_table(cases, TITLE))
+    Console(file=shown, width=width).print(limits_table(cases))
     return shown.getvalue().splitlines()
 
 

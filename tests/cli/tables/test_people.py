@@ -8,7 +8,7 @@ from io import StringIO
 import pytest
 from rich.console import Console
 
-from evodesign.cli.tables.people import hardest_cases, people_table, person_table
+from evodesign.cli.tables.people import hardest_cases, people_table
 from evodesign.quantities.ergonomics import ergonomics
 from evodesign.records import Case, Hold
 from tests.quantities.test_ergonomics import PERSON, posture
@@ -19,11 +19,14 @@ REACHING = {"jLeftShoulder_rotz": -1.57, "jRightShoulder_rotz": 1.57}
 def printed(width: int) -> str:
     unrated = replace(PERSON, strengths={})
     cases = [
-        ("[bold]female P95, 15 kg, 0.8 m", ergonomics(PERSON, posture({}))),
-        ("far", ergonomics(unrated, posture(REACHING))),
+        (
+            Case(person="[bold]female P95", payload="15 kg", task=Hold(height_m=0.8)),
+            ergonomics(PERSON, posture({})),
+        ),
+        (Case(person="far", task=Hold(height_m=0.8)), ergonomics(unrated, posture(REACHING))),
     ]
     out = StringIO()
-    Console(file=out, width=width).print(person_table(cases))
+    Console(file=out, width=width).print(people_table(cases))
     return out.getvalue()
 
 
@@ -60,10 +63,10 @@ def test_of_several_people_only_the_hardest_cases_of_each_are_shown() -> None:
         assert hardest in shown
         assert own[-1][0].task.height_m in shown, "its index is the largest"
     out = StringIO()
-    Console(file=out, width=110).print(people_table(asked, titled=True))
+    Console(file=out, width=110).print(people_table(asked))
     assert "hardest postures" in out.getvalue()
     alone = [(Case(task=Hold(height_m=height)), quiet) for height in (0.8, 1.0)]
     out = StringIO()
-    Console(file=out, width=110).print(people_table(alone, titled=True))
+    Console(file=out, width=110).print(people_table(alone))
     assert "each posture" in out.getvalue()
     assert "0.8 m" in out.getvalue()

@@ -28,7 +28,7 @@ INFEASIBLE = [each for each in ALL if not each.feasible]
 def logged(directory: Path, evaluations: list[Evaluation]) -> RunLog:
     with RunWriter(directory, HEADER) as writer:
         for evaluation in evaluations:
-            writer.evaluation(evaluation)
+            writer.write(evaluation)
     return read_run(directory)
 
 

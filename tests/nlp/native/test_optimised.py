@@ -98,9 +98,9 @@ def test_blocks_begin_on_quick_code_and_go_on_with_optimised_code_of_the_same_bi
     bounds, given = (np.full(8, -3.0), np.full(8, 3.0)), np.array([0.3, 0.5, 0.7])
 
     def solved() -> bytes:
-        symbols, found = maker.solve(OPTIONS, np.full(8, 0.2), bounds, given)
+        found = maker.solve(OPTIONS, np.full(8, 0.2), bounds, given)
         assert found.iterations > 3
-        return symbols.tobytes() + np.asarray(found.rows).tobytes()
+        return found.symbols.tobytes() + found.rows.tobytes()
 
     first, quick, end = solved(), [each.file for each in maker._functions], time.monotonic() + 120.0
     while any(maker._optimised):

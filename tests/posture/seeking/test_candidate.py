@@ -66,9 +66,9 @@ class Asked:
         self.gone_on.append(raw.cost)
         return replace(raw, status=Status.SOLVED, cost=self._costs.get(raw.cost, raw.cost))
 
-    def settle(self, raw: RawSolution, last: bool) -> RawSolution:
+    def settle(self, raw: RawSolution, *, patient: bool) -> RawSolution:
         self.settled.append(raw.cost)
-        self.patient.append(last)
+        self.patient.append(patient)
         return ended_at(raw, self._settled.get(raw.cost, raw.cost))
 
     def clear(self, raw: RawSolution) -> RawSolution:

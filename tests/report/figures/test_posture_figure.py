@@ -10,8 +10,7 @@ import trimesh
 
 from evodesign.body.placement import Placement
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
-from evodesign.report.figures.faces import AROUND, Face, faces_of
-from evodesign.report.figures.mesh_faces import seen_triangles
+from evodesign.report.figures.faces import AROUND, Face, faces_of, seen_triangles
 from evodesign.report.figures.posture_figure import Camera
 from evodesign.tree.model import Mesh
 from evodesign.tree.surface import surface_of

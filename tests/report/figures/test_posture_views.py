@@ -9,7 +9,7 @@ from matplotlib.text import Annotation
 
 from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.problem.build import DesignProblem
-from evodesign.report.figures.posture_views import FRONT, SIDE, alone, front_figure, side_figure
+from evodesign.report.figures.design import FRONT, SIDE, alone, front_figure, side_figure
 from evodesign.report.scene_models import PlacedScene
 from tests.report.scenes import random_company, random_detail, random_stages
 from tests.report.several import LOADS, PEOPLE, problem_of_several

@@ -47,12 +47,12 @@ def real_run(native: DesignProblem, known: Precomputed, tmp_path_factory: pytest
                 worker="here",
             )
             done.append(evaluation)
-            log.evaluation(evaluation)
+            log.write(evaluation)
             if running.enters(evaluation):
-                log.detail(Detail(evaluation=number, cases=assessed.cases))
+                log.write(Detail(evaluation=number, cases=assessed.cases))
         reference = reference_point(objectives, done)
         assert reference is not None
-        log.generation(
+        log.write(
             Generation(
                 number=0,
                 evaluations=len(done),
@@ -64,7 +64,7 @@ def real_run(native: DesignProblem, known: Precomputed, tmp_path_factory: pytest
             )
         )
         numbers = tuple(evaluation.number for evaluation in front(objectives, done))
-        log.front(Front(generation=0, evaluations=numbers))
+        log.write(Front(generation=0, evaluations=numbers))
     return read_run(directory)
 
 

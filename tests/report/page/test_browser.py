@@ -145,7 +145,7 @@ def crowded_run(directory: Path) -> RunLog:
             values = {"robot_torque": 30.0 + place**2, "reach_height": 1.0 + 0.1 * place}
             values["robot_torque"] += 1e-3 * behind
             found = msgspec.structs.replace(evaluation.assessment, objectives=values)
-            log.evaluation(msgspec.structs.replace(evaluation, number=number, assessment=found))
+            log.write(msgspec.structs.replace(evaluation, number=number, assessment=found))
     return read_run(directory)
 
 
@@ -332,7 +332,7 @@ def toy_run(
                 values = {one.name: (0.5 - evaluation.genome[i % 2]) ** 2 for i, one in enumerate(more)}
                 values = {name: value for name, value in (found.objectives | values).items() if name in names}
                 found = msgspec.structs.replace(found, objectives=values)
-                log.evaluation(msgspec.structs.replace(evaluation, assessment=found))
+                log.write(msgspec.structs.replace(evaluation, assessment=found))
     return read_run(directory)
 
 

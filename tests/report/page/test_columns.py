@@ -8,7 +8,7 @@ import msgspec
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evodesign.report.page.columns import side_by_side
+from evodesign.report.page.render import side_by_side
 from tests.report.page.reading import apart
 
 LEAVES = (

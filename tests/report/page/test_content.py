@@ -41,9 +41,9 @@ def toy_run(directory: Path, count: int = 30) -> RunLog:
     header = toy_header()
     with RunWriter(directory, header) as log:
         for evaluation in toy_evaluations(header, count):
-            log.evaluation(evaluation)
-            log.detail(toy_detail(evaluation))
-        log.generation(toy_generation(0, count))
+            log.write(evaluation)
+            log.write(toy_detail(evaluation))
+        log.write(toy_generation(0, count))
     return read_run(directory)
 
 
@@ -204,7 +204,7 @@ def test_run_without_feasible_design_shows_the_nearest(tmp_path: Path) -> None:
     with RunWriter(tmp_path / "bad", header) as log:
         for evaluation in toy_evaluations(header, 40):
             if not evaluation.feasible:
-                log.evaluation(evaluation)
+                log.write(evaluation)
     run = read_run(tmp_path / "bad")
     nearest = [mark.number for mark in page_content(run).marks if mark.kind == "near"]
     missed = {evaluation.number: evaluation.assessment.violation or 0.0 for evaluation in run.evaluations}
@@ -226,7 +226,7 @@ def test_any_number_of_objectives(tmp_path: Path, count: int) -> None:
                 name: value for name, value in (assessment.objectives | values).items() if name in names
             }
             assessment = msgspec.structs.replace(assessment, objectives=values)
-            log.evaluation(msgspec.structs.replace(evaluation, assessment=assessment))
+            log.write(msgspec.structs.replace(evaluation, assessment=assessment))
     made = page_content(read_run(tmp_path / "run"))
     assert list(made.points.objectives) == [objective.name for objective in objectives]
     assert {"best"} <= {mark.kind for mark in made.marks}

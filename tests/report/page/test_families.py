@@ -37,7 +37,7 @@ def test_a_design_outside_the_map_is_said_to_be(tmp_path: Path, chromium: Tab) -
     evaluations = toy_evaluations(header, 60)
     with RunWriter(tmp_path / "run", header) as log:
         for evaluation in evaluations:
-            log.evaluation(evaluation)
+            log.write(evaluation)
     path = tmp_path / "report.html"
     path.write_text(page_html(page_content(read_run(tmp_path / "run"))), encoding="utf-8")
     open_page(chromium, path)
@@ -54,7 +54,7 @@ def test_the_map_shows_the_elites_and_relatives_open_by_a_click(tmp_path: Path, 
     header = toy_header(budget=60)
     with RunWriter(tmp_path / "run", header) as log:
         for evaluation in toy_evaluations(header, 60):
-            log.evaluation(evaluation)
+            log.write(evaluation)
     run = read_run(tmp_path / "run")
     path = tmp_path / "report.html"
     path.write_text(page_html(page_content(run)), encoding="utf-8")

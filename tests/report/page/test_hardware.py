@@ -16,7 +16,7 @@ from evodesign.problem.source import read_source
 from evodesign.quantities.hardware_quantities import winding_temperature
 from evodesign.records import Detail, Evaluation, Hold
 from evodesign.report.page import page_content, page_html
-from evodesign.report.page.hardware import hardware_content
+from evodesign.report.page.card import hardware_content
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
@@ -46,7 +46,7 @@ def run(hardware: DesignProblem, tmp_path_factory: pytest.TempPathFactory) -> Ru
     assessed = evaluator.assess(genome)
     assert assessed.cases, assessed.assessment.reason
     with RunWriter(directory, header_of(hardware, hardware.settings("nsga2", 1, 1), 1)) as log:
-        log.evaluation(
+        log.write(
             Evaluation(
                 number=0,
                 generation=0,
@@ -56,7 +56,7 @@ def run(hardware: DesignProblem, tmp_path_factory: pytest.TempPathFactory) -> Ru
                 worker="here",
             )
         )
-        log.detail(Detail(evaluation=0, cases=assessed.cases))
+        log.write(Detail(evaluation=0, cases=assessed.cases))
     return read_run(directory)
 
 

@@ -26,7 +26,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> RunLog:
     directory = tmp_path_factory.mktemp("importance") / "run"
     with RunWriter(directory, header) as log:
         for evaluation in toy_evaluations(header, 120):
-            log.evaluation(evaluation)
+            log.write(evaluation)
     return read_run(directory)
 
 

@@ -30,7 +30,7 @@ from evodesign.records import (
     Status,
 )
 from evodesign.report.page import page_content, page_html
-from evodesign.report.page.static_torques import StaticTorques
+from evodesign.report.page.card import StaticTorques
 from evodesign.runlog.header import header_of
 from evodesign.runlog.run import RunLog, read_run
 from evodesign.runlog.writer import RunWriter
@@ -84,8 +84,8 @@ def run(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> RunLog:
             ),
         )
         genome = problem.space.genome(values)
-        log.detail(Detail(evaluation=0, cases=(detail,)))
-        log.evaluation(Evaluation(0, 0, genome, assessment, seconds=0.1, worker="here"))
+        log.write(Detail(evaluation=0, cases=(detail,)))
+        log.write(Evaluation(0, 0, genome, assessment, seconds=0.1, worker="here"))
     return read_run(place)
 
 

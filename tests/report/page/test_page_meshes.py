@@ -40,8 +40,8 @@ def run(clad: DesignProblem, tmp_path_factory: pytest.TempPathFactory) -> RunLog
     worth = {objective.name: 1.0 for objective in clad.objectives}
     assessment = msgspec.structs.replace(evaluation.assessment, objectives=worth)
     with RunWriter(directory, header_of(clad, clad.settings("random", 4, 1), 4)) as log:
-        log.evaluation(msgspec.structs.replace(evaluation, assessment=assessment))
-        log.detail(Detail(evaluation=0, cases=random_detail(clad, 2).cases))
+        log.write(msgspec.structs.replace(evaluation, assessment=assessment))
+        log.write(Detail(evaluation=0, cases=random_detail(clad, 2).cases))
     return read_run(directory)
 
 

@@ -13,7 +13,7 @@ from evodesign.human.body import human_tree
 from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.problem.build import DesignProblem
 from evodesign.report.page import page_content, page_html
-from evodesign.report.page.over_people import over_people
+from evodesign.report.page.card import over_people
 from evodesign.runlog.run import RunLog
 from tests.report.page.chromium import Tab
 from tests.report.page.reading import CANVAS, SHOWN_WITHIN, check_poses, open_page, shown_as

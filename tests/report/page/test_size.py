@@ -68,9 +68,9 @@ def test_a_page_of_a_thousand_designs_is_smaller_than_5_mb(
             changed = msgspec.structs.replace(
                 found, number=number, genome=genome, generation=number // 40, assessment=assessment
             )
-            log.evaluation(changed)
+            log.write(changed)
             detail = msgspec.convert(jittered(known, generator), Detail)
-            log.detail(msgspec.structs.replace(detail, evaluation=number))
+            log.write(msgspec.structs.replace(detail, evaluation=number))
     run = read_run(tmp_path / "run")
     assert details_shown(run.details, (), run.evaluations, range(MADE))[1] == (), "none is left out"
     assert most_designs(run.details) >= DESIGNS

@@ -10,9 +10,9 @@ import pytest
 from evodesign.human.anthropometry import Person, segments, sole_size
 from evodesign.human.anthropometry_tables import Sex
 from evodesign.human.body import human_tree
-from evodesign.human.stance import feet_apart, trunk_clearance
 from evodesign.problem.build import build_problem
 from evodesign.problem.source import read_source
+from evodesign.problem.stance_limits import feet_apart, trunk_clearance
 from evodesign.records import ProblemSource
 
 PEOPLE = (Person(1.52, 50.0, Sex.FEMALE), Person(1.88, 110.0, Sex.MALE))
