@@ -102,7 +102,7 @@ def sized_result(
             cases = rounds.following(given, cases) if cases else rounds.cases(given)
             demand = demand_of(space, given, robot, cases, latest)
             latest = demand if isinstance(demand, Demand) else None
-            sizing = sizes.told(latest.at(sizes.sizes), latest.at) if latest else sizes.told(None)
+            sizing = sizes.ended_by(latest.at(sizes.sizes), latest.at) if latest else sizes.ended_by(None)
             if sizing is not None:
                 break
         if sizing.status is not Status.SOLVED and all(each.solved for each in cases):

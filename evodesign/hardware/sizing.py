@@ -92,7 +92,9 @@ class SizingRounds:
         self._wanted, self._round = self.sizes, 0
         self._met: list[tuple[Array, Array]] = []
 
-    def told(self, demand: Sizes | None, predict: Callable[[Sizes], Sizes] | None = None) -> Sizing | None:
+    def ended_by(
+        self, demand: Sizes | None, predict: Callable[[Sizes], Sizes] | None = None
+    ) -> Sizing | None:
         """How the rounds end with a demand; None if it is to be told for other sizes.
 
         Args:

@@ -172,8 +172,9 @@ class LiftProgram:
         shared = self._shared(design, lift, mass, inertia, start.hands)
         (low, high), program = self._bounds(lift), self._with_rows_of(start)
         own = program._own(start)
-        begun, options = np.clip(start.symbols, low, high), BUDGET.briefly(self._options)
-        return program._program.solve(begun, (low, high), shared, own, options if briefly else None)
+        options, most = self._options, BUDGET.brief_lifts if briefly else self._options.iterations
+        options = replace(options, iterations=min(most, options.iterations))
+        return program._program.solve(np.clip(start.symbols, low, high), (low, high), shared, own, options)
 
     def exact(
         self, lift: Lift, start: LiftStart, ending: Ending, design: Sequence[float], mass: float

@@ -1,9 +1,9 @@
 """Lifts of any design of a scene: found from its holds at both ends and checked, or told why there is none.
 
-Solves begin at the holds at both ends, followed along the lift with the feet in place, and at the robot's
-beside persons whose motions were found once for the problem (`lift_starts`); so a result depends on problem
-and design alone. The cheapest one counts. Holds of several heights joined together do not do for a start:
-their elbows bend in different ways.
+Solves begin at the robot's holds, followed along the lift with the feet in place, beside persons whose
+motions were found once for the problem, and at the hold of an end where none of these begins (`lift_starts`);
+so a result depends on problem and design alone. The cheapest one counts. Holds of several heights joined
+together do not do for a start: their elbows bend in different ways.
 
 Beyond 300 lines: the steps from holds to a checked lift stand in the order in which they happen.
 """
@@ -248,7 +248,8 @@ def lift_starts(
     """Where solves of a design's lift begin, by a name.
 
     A start has a motion of the person, or it is that of the hold. The robot follows the lift from its hold at
-    either end; where the start moves it (`MOVED`), from that one, moved.
+    either end; where the start moves it (`MOVED`), from that one, moved. The hold itself is a start at ends
+    where no other one begins.
 
     Args:
         program: of the lift's knots.
@@ -263,6 +264,9 @@ def lift_starts(
         program.followed(lift, each, knot, design, carried)
         for each, knot, carried in zip(ends, knots, disturbed, strict=True)
     ]
+    begun_at = {
+        int(start[MOVED][0]) if MOVED in start else place for start in known if start for place in (0, 1)
+    }
     starts: dict[str, LiftStart] = {}
     for number, start in enumerate(known, 1):
         which = f", start {number}" if start else ""
@@ -272,8 +276,9 @@ def lift_starts(
             begun = program.followed(lift, postures, knots[int(last)], design, disturbed[int(last)])
             starts[f"{names[int(last)]}, moved{which}"] = program.beside(begun, start)
         else:
-            for name, begun in zip(names, followed, strict=True):
-                starts[name + which] = program.beside(begun, start)
+            for place, (name, begun) in enumerate(zip(names, followed, strict=True)):
+                if start or place not in begun_at:
+                    starts[name + which] = program.beside(begun, start)
     return starts
 
 

@@ -20,7 +20,7 @@ def sized(
 ) -> Sizing:
     rounds = SizingRounds(start, margins, bounds)
     while True:
-        found = rounds.told(demand(rounds.sizes))
+        found = rounds.ended_by(demand(rounds.sizes))
         if found is not None:
             return found
 

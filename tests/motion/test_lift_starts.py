@@ -74,16 +74,26 @@ def test_a_robot_that_is_moved_by_nothing_begins_at_its_hold(
     ends = [lifted.hold(height).postures for height in LIFT.heights]
     person = program.motion_of(HUMAN, program.followed(LIFT, ends[1], LIFT.knots - 1, lifted.design))
     still = {**person, MOVED: np.array([1.0, *np.zeros(3 + len(ends[1][ROBOT].joints))])}
-    begun = lift_starts(program, LIFT, ends, lifted.design, [{}, person, still])
+    begun = lift_starts(program, LIFT, ends, lifted.design, [person, still])
     assert [*begun] == [
-        "hold at the beginning",
-        "hold at the end",
-        "hold at the beginning, start 2",
-        "hold at the end, start 2",
-        "hold at the end, moved, start 3",
+        "hold at the beginning, start 1",
+        "hold at the end, start 1",
+        "hold at the end, moved, start 2",
     ]
-    moved, unmoved = begun["hold at the end, moved, start 3"], begun["hold at the end, start 2"]
+    moved, unmoved = begun["hold at the end, moved, start 2"], begun["hold at the end, start 1"]
     assert moved.symbols == pytest.approx(unmoved.symbols, abs=1e-6)
+
+
+def test_a_hold_is_a_start_where_no_other_one_begins(
+    program: LiftProgram, lifted: Lifted, found: LiftStart
+) -> None:
+    ends = [lifted.hold(height).postures for height in LIFT.heights]
+    person = program.motion_of(HUMAN, found)
+    moved = {**person, MOVED: np.array([1.0, *np.zeros(3 + len(ends[1][ROBOT].joints))])}
+    both = ["hold at the beginning", "hold at the end"]
+    for known, holds in (([], both), ([moved], both[:1]), ([person], []), ([moved, person], [])):
+        begun = lift_starts(program, LIFT, ends, lifted.design, [*known, {}])
+        assert [name for name in begun if name in both] == holds
 
 
 @pytest.mark.slow

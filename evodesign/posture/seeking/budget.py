@@ -17,7 +17,8 @@ class Budget:
     Args:
         rounds: how often rows are switched on, one solve after the other.
         brief: iterations after which one of several solves is given up: 9 of 10 that succeed take less than
-            50, and lifts do (docs/motion.md).
+            50.
+        brief_lifts: likewise of lifts, which take less than 60 (docs/motion.md).
         free: share of its cost that a solution must save per metre [1/m] by a row's yielding, for the row to
             hold it.
         part_better: share of its cost that a posture must gain by parting bodies in other ways to be solved
@@ -46,6 +47,7 @@ class Budget:
 
     rounds: int = 6
     brief: int = 60
+    brief_lifts: int = 100
     free: float = 1e-4
     part_better: float = 1e-3
     part_lifts_better: float = 1e-4
