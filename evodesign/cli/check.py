@@ -14,7 +14,7 @@ def check(problem: ProblemPath, json: Json = False) -> None:
 
     Agents, load, task, and what each parameter changes; then whether the robot stands on its soles, faces the
     load, has hands that reach it, and holds it at one of the heights, and whether a search can begin. A
-    height that a person, or the robot of any length within the bounds, does not reach is an error.
+    height that a person, or the robot with the lengths that reach farthest, does not reach is an error.
     """
     from evodesign.cli.output import console, print_json, print_lines, show_notes
     from evodesign.cli.tables.problem import findings_table, model_tables, rules_table

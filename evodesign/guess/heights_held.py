@@ -1,7 +1,7 @@
 """Whether a robot and people hold the load at the heights of their problem, solved for within seconds.
 
 The robot as it is in its file has a reach, and a posture at one height within. A height outside of it is
-refused where robots of the shortest and longest lengths do not reach it either, or a person does not.
+refused where robots of the lengths that reach farthest do not reach it either, or a person does not.
 Postures are solved without `[collisions]`, of which the robot's colliding pairs would have to be found first,
 in a minute.
 """
@@ -10,12 +10,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from evodesign.design.parameter import ParameterKind
 from evodesign.errors import InputError, listed
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.mechanics.scene import Scene
-from evodesign.posture.formulations.reach import Reach, people_reach
+from evodesign.posture.formulations.reach import HIGHEST, LOWEST, Reach, people_reach
 from evodesign.posture.postures import Symmetry
+from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import DesignProblem
 from evodesign.tree.welded import without_frames
 
@@ -80,7 +83,10 @@ def holds(problem: DesignProblem) -> str:
 
 
 def _refuse_beyond_every_design(problem: DesignProblem, alone: DesignProblem, reach: Reach) -> None:
-    """Refuse heights that no robot of the extreme lengths reaches; where joints may move, nobody knows.
+    """Refuse heights that robots of the lengths that reach farthest do not reach.
+
+    Which these are the derivatives of the reach say; where joints may move or there is no derivative, nobody
+    knows.
 
     Args:
         problem: whose heights these are.
@@ -90,24 +96,38 @@ def _refuse_beyond_every_design(problem: DesignProblem, alone: DesignProblem, re
     free = {parameter.kind for parameter in problem.space.free}
     if free & {ParameterKind.OFFSET, ParameterKind.TILT}:
         return
-    ends = (False, True) if free & {ParameterKind.LENGTH, *WIDEST} else ()
-    values = [_extreme(problem, longest=longest) for longest in ends]
-    reaches = [reach, *(Evaluator(alone).solve(each).reach for each in values)]
+    evaluator, reaches, design = Evaluator(alone), [reach], ""
+    if free & {ParameterKind.LENGTH, *WIDEST}:
+        design = " as it is or with lengths at bounds"
+        for sense in (HIGHEST, LOWEST):
+            values = _farthest(problem, evaluator, sense)
+            if values is None:
+                return
+            reaches.append(evaluator.solve(values).reach)
     known = [(each.lowest, each.highest) for each in reaches if each.lowest and each.highest]
     lowest, highest = min(low for low, _ in known), max(high for _, high in known)
     who = "the robot" if problem.scene.robots else "everyone"
-    design = " as it is or with lengths at either bound" if ends else ""
     _refuse_outside(problem, f"{who} reaches{design}", lowest, highest)
 
 
-def _extreme(problem: DesignProblem, *, longest: bool) -> tuple[float, ...]:
-    """Values of the robot with its shortest or longest lengths, widest joints and strongest actuators."""
-    at_upper = {ParameterKind.LENGTH: longest, **WIDEST}
-    values = zip(problem.space.parameters, problem.space.unscaled(problem.scene.designed_tree), strict=True)
-    return tuple(
-        (each.upper if at_upper[each.kind] else each.lower) if each.kind in at_upper else value
-        for each, value in values
-    )
+def _farthest(problem: DesignProblem, evaluator: Evaluator, sense: float) -> tuple[float, ...] | None:
+    """Values of the robot with the lengths that reach farthest, widest joints and strongest actuators.
+
+    Lengths are at the bounds to which the extreme height of the unscaled robot moves farther out; None where
+    it has no derivative.
+    """
+    unscaled = problem.space.unscaled(problem.scene.designed_tree)
+    found = [each.derivative(unscaled, sense) for each in evaluator.inner.reaches.values()]
+    slopes = [each.slope for each in found if isinstance(each, ReachDerivative)]
+    if len(slopes) < len(found):
+        return None
+    outwards = (-sense * np.sum(slopes, axis=0)).tolist()
+    values = list[float]()
+    for parameter, value, farther in zip(problem.space.parameters, unscaled, outwards, strict=True):
+        at_upper = {ParameterKind.LENGTH: farther > 0.0, **WIDEST}.get(parameter.kind)
+        ends = {None: value, True: parameter.upper, False: parameter.lower}
+        values.append(ends[at_upper])
+    return tuple(values)
 
 
 def _refuse_outside(problem: DesignProblem, who: str, lowest: float, highest: float) -> None:

@@ -122,7 +122,7 @@ def test_heights_out_of_reach_are_named_beside_those_within() -> None:
 def test_heights_that_no_length_and_no_person_reaches_are_refused() -> None:
     robot, person = faults(at_heights("[1.05, 4.0]"))
     key = r"task\.heights_m\[1\]: wanted heights that"
-    who = "the robot reaches as it is or with lengths at either bound"
+    who = "the robot reaches as it is or with lengths at bounds"
     assert re.fullmatch(rf"{key} {who}, from 0\.\d\d to \d\.\d\d m, found 4", robot)
     assert re.fullmatch(rf"{key} female P5 reaches, from 0\.0\d to 1\.7\d m, found 4", person)
 
