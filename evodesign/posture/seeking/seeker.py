@@ -78,7 +78,8 @@ class Seeker:
         switches, solver = self.program.switches, self.solver if patient else self.brief
         if switches is None:
             return raw
-        return self.bettered(parameters, _RawSolves(solver, switches, parameters).parted(raw), gain)
+        found = _RawSolves(solver, switches, parameters).parted(raw)
+        return _RawSolves(self.solver, switches, parameters).bettered(found, BUDGET.part_better, gain)
 
     def bettered(self, parameters: Parameters, found: RawSolution, gain: float) -> RawSolution:
         """A solution whose rows are kept in better ways, as long as it gains more by them than `gain`."""
