@@ -104,7 +104,7 @@ class PostureProblem:
     def sketched(self, design: Sequence[float], task: Task) -> CaseSolution:
         """What the first start leads to about, not checked; arguments as in `solve`."""
         name, portfolio = next(self._in_turn(task))
-        formulation = self._formulation(name, task, self._methods(name)[0])
+        formulation = self._formulation(name, task)
         trial = formulation.sketched(design, task, portfolio)
         return case_solution(self._setting.scene.case(task), [trial])
 
@@ -137,7 +137,7 @@ class PostureProblem:
         """The best of a solution and of what others of the same design lead to; arguments as in `begun`."""
         task = solution.case.task
         name, _ = next(self._in_turn(task))
-        formulation = self._formulation(name, task, self._methods(name)[0])
+        formulation = self._formulation(name, task)
         for other in others:
             most = (1.0 - BUDGET.same) * _cost(solution)
             trials = [formulation.cheaper(design, task, other, checker, most)]
@@ -166,7 +166,7 @@ class PostureProblem:
         """The best posture of some trials, polished where the problem asks for it."""
         best, found = trials[-1].best, [*trials]
         if self._symmetry is Symmetry.POLISH and best is not None:
-            whole = self._formulation(WHOLE, task, self._methods(WHOLE)[0])
+            whole = self._formulation(WHOLE, task)
             found.append(whole.solve(design, task, [whole.start_at(best.instants, "polish")], checker))
         return case_solution(self._setting.scene.case(task), found)
 
@@ -177,8 +177,7 @@ class PostureProblem:
         """
         if solution.attempt is None or solution.raw is None:
             return None
-        name = solution.attempt.formulation
-        formulation = self._formulation(name, solution.case.task, self._methods(name)[0])
+        formulation = self._formulation(solution.attempt.formulation, solution.case.task)
         return formulation.followed(design, solution, solution.raw)
 
     def derivative(
@@ -190,16 +189,14 @@ class PostureProblem:
         """
         if solution.attempt is None:
             return NotDifferentiable(solution.reason)
-        name, task = solution.attempt.formulation, solution.case.task
-        formulation = self._formulation(name, task, self._methods(name)[0])
+        formulation = self._formulation(solution.attempt.formulation, solution.case.task)
         return formulation.derivative(design, solution, exact=exact)
 
     def active_limits(self, design: Sequence[float], solution: CaseSolution) -> tuple[ActiveLimit, ...]:
         """Which limits hold a solved posture, and what they cost; none where nobody knows."""
         if solution.attempt is None:
             return ()
-        name, task = solution.attempt.formulation, solution.case.task
-        formulation = self._formulation(name, task, self._methods(name)[0])
+        formulation = self._formulation(solution.attempt.formulation, solution.case.task)
         return formulation.active_limits(design, solution)
 
     def landscape(
@@ -213,7 +210,7 @@ class PostureProblem:
                 count as they are.
         """
         name, _ = next(self._in_turn(task))
-        formulation = self._formulation(name, task, self._methods(name)[0])
+        formulation = self._formulation(name, task)
         found = formulation.landscape(task)
         if checker_of is None:
             return found
@@ -305,7 +302,9 @@ class PostureProblem:
         yield SYMMETRIC, portfolio
         yield WHOLE, ()
 
-    def _formulation(self, name: str, task: Task, method: MethodName) -> JointPostures:
+    def _formulation(self, name: str, task: Task, method: MethodName | None = None) -> JointPostures:
+        """A formulation, solved by the method that is tried first if none is named."""
+        method = method or self._methods(name)[0]
         key = (name, type(task), method)
         if key not in self._made:
             self._made[key] = self._joint(name, self._solved_by(method, name), type(task))
