@@ -16,7 +16,7 @@ from evodesign.cli.export import export
 from evodesign.cli.output import rounded
 from evodesign.cli.report import report
 from evodesign.cli.show import show
-from evodesign.cli.tables.people import TITLE
+from evodesign.cli.tables.people import EFFORT_TITLE
 from evodesign.errors import EvodesignError, InputError, RunError
 from evodesign.evaluation.evaluate import Evaluator
 from evodesign.posture.precompute.precomputed import Precomputed
@@ -139,7 +139,7 @@ def test_card_and_json_say_what_the_postures_ask_of_the_person(
         assert one["lifting_index"] == pytest.approx(one["held_kg"] / one["recommended_weight_kg"])
     show(run, 0)
     text = capsys.readouterr().out
-    first, second = text.split(TITLE)
+    first, second = text.split(EFFORT_TITLE)
     rows, others = (
         {row[0]: row[1:] for row in cells(part) if row[0].endswith(" m")} for part in (first, second)
     )
