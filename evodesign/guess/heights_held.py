@@ -104,8 +104,8 @@ def _refuse_beyond_every_design(problem: DesignProblem, alone: DesignProblem, re
             if values is None:
                 return
             reaches.append(evaluator.solve(values).reach)
-    known = [(each.lowest, each.highest) for each in reaches if each.lowest and each.highest]
-    lowest, highest = min(low for low, _ in known), max(high for _, high in known)
+    lowest = min(each.lowest for each in reaches if each.lowest is not None)
+    highest = max(each.highest for each in reaches if each.highest is not None)
     who = "the robot" if problem.scene.robots else "everyone"
     _refuse_outside(problem, f"{who} reaches{design}", lowest, highest)
 
