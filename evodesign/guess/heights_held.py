@@ -20,7 +20,6 @@ from evodesign.posture.formulations.reach import HIGHEST, LOWEST, Reach, people_
 from evodesign.posture.postures import Symmetry
 from evodesign.posture.solution_derivative import ReachDerivative
 from evodesign.problem.build import DesignProblem
-from evodesign.tree.welded import without_frames
 
 WIDEST = {
     ParameterKind.LOWER: False,
@@ -37,19 +36,15 @@ def holds(problem: DesignProblem) -> str:
     Raises:
         InputError: nothing is held, or a height is out of reach for every design.
     """
-    options = replace(problem.options, compiled=False)
-    scene, bare = problem.scene, problem.scene.designed_tree
-    for robot in scene.designed[:1]:
-        bare = without_frames(bare, (*(contact.frame for contact in robot.contacts), *robot.trunk))
+    scene = problem.scene
 
     def freed(scene: Scene) -> Scene:
-        free = (replace(each, collisions=None) for each in scene.agents)
-        return scene.with_agents(*(replace(each, tree=bare) if each.designed else each for each in free))
+        return scene.with_agents(*(replace(each, collisions=None) for each in scene.agents))
 
     alone = replace(
         problem,
         scenes=tuple(map(freed, problem.scenes[:1] if scene.robots else problem.scenes)),
-        options=options,
+        options=replace(problem.options, compiled=False),
         start_portfolio=False,
         whole_reach=True,
     )

@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from evodesign.body.inertia import total
 from evodesign.body.placement import Vector, rotate
@@ -19,13 +19,14 @@ from evodesign.errors import InputError, listed
 from evodesign.guess.body_plan import body_plan, opposite_knees
 from evodesign.guess.heights_held import holds, people_hold
 from evodesign.mechanics.agent import SIDES, Agent
+from evodesign.mechanics.scene import Scene
 from evodesign.problem.agent_tables import Facing
 from evodesign.problem.build import DesignProblem
 from evodesign.problem.file import ProblemFile
 from evodesign.problem.source import decode_toml
 from evodesign.searches.registry import make_asynchronous_search, make_search
 from evodesign.tree.model import Tree
-from evodesign.tree.welded import WeldedTree
+from evodesign.tree.welded import WeldedTree, without_frames
 
 LIGHTEST, HEAVIEST = 1.0, 500.0
 """Masses [kg] between which a robot is one that people build."""
@@ -56,6 +57,7 @@ def preflight(problem: DesignProblem) -> tuple[Finding, ...]:
     """Every item in turn; what solves comes only after all others have passed."""
     if not problem.scene.robots:
         return _solved(problem)
+    problem = _without_frames(problem)
     robot, space = problem.scene.robot, problem.space
     welded = WeldedTree(robot.tree)
     equipped = WeldedTree(space.resized(robot.tree, space.given(space.unscaled(robot.tree), {})))
@@ -74,6 +76,22 @@ def preflight(problem: DesignProblem) -> tuple[Finding, ...]:
         items["can be searched"] = lambda: _search(problem)
     found = [_tried(name, item) for name, item in items.items()]
     return tuple(found) if any(finding.fault for finding in found) else (*found, *_solved(problem))
+
+
+def _without_frames(problem: DesignProblem) -> DesignProblem:
+    """The problem whose designed robot has no links without a mass, but for those that something names."""
+    tree = problem.scene.designed_tree
+    named = {name for parameter in problem.space.parameters for name in parameter.links}
+    named |= {tree.joint_by_name[name].child for each in problem.space.parameters for name in each.joints}
+    for robot in problem.scene.designed[:1]:
+        named |= {*(contact.frame for contact in robot.contacts), *robot.trunk}
+    bare = without_frames(tree, named)
+
+    def of(scene: Scene) -> Scene:
+        agents = (replace(each, tree=bare) if each.designed else each for each in scene.agents)
+        return scene.with_agents(*agents)
+
+    return replace(problem, scenes=tuple(map(of, problem.scenes)))
 
 
 def _solved(problem: DesignProblem) -> tuple[Finding, ...]:

@@ -1,6 +1,6 @@
 """Commands in processes that may use 300 MB beyond what they import, and six times its processor time.
 
-Importing takes 1.3 s on an idle machine, and about as much longer as everything else on a slow or busy one.
+Importing takes 2 s on an idle machine, and about as much longer as everything else on a slow or busy one.
 What grows faster than its input takes many times as long. All is imported once: each command has a process of
 its own, forked from there.
 """
@@ -83,7 +83,8 @@ if __name__ == "__main__":
     import evodesign.cli.check
     import evodesign.guess.preflight
     import evodesign.problem.inertia_rules
-    import evodesign.problem.mesh_reading  # noqa: F401
+    import evodesign.problem.mesh_reading
+    import evodesign.searches.nsga2  # noqa: F401
     from evodesign.cli import main
 
     if _forked():
