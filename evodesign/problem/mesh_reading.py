@@ -38,6 +38,10 @@ LARGEST = 1e8
 FINEST = 512
 """Cells along a mesh in which vertices are merged at first."""
 
+MANY = 16
+"""Times as many triangles as are wanted, of which vertices are merged at once: collapsing edges of more takes
+seconds, only to find that many small pieces stand in the way."""
+
 CAREFUL, SIZE = 3, 0.2
 """From 0 (slow and good) to 10, and the largest side that meshes are given before, as what the library bears
 is no share of it. On meshes of a G1, of about this size [m], with 2,000 triangles each, a surface then moves
@@ -154,9 +158,13 @@ def _fewer(vertices: Vertices, faces: Faces, most: int) -> tuple[Vertices, Faces
 
     Of many small pieces each keeps some triangles, so their vertices are then merged first.
     """
-    points, kept, cells = *_collapsed(vertices, faces, most), FINEST
-    while len(kept) > most:
-        points, kept = _collapsed(*_clustered(vertices, faces, cells), most)
+    points, kept, cells = vertices, faces, FINEST
+    while True:
+        if len(kept) <= MANY * most:
+            points, kept = _collapsed(points, kept, most)
+        if len(kept) <= most:
+            break
+        points, kept = _clustered(vertices, faces, cells)
         cells = 2 * cells // 3
     used, renamed = np.unique(kept, return_inverse=True)
     if not len(used):
