@@ -17,7 +17,7 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from evodesign.report.figures.paint import INK, clean, color_of, new_figure
+from evodesign.report.figures.paint import INK, clean, color_of, key_below, new_figure
 from evodesign.tree.words import in_words
 
 BOX, CLOUD = 0.36, 0.30
@@ -105,10 +105,7 @@ def joint_torques(series: Mapping[str, Sequence[TorquesAt]], title: str) -> Figu
         _row_panel(panel, cases, heights, rows[name])
         panel.set_title(name, fontsize=10, color=INK, parse_math=False)
     if heights:
-        handles, labels = axes[0].get_legend_handles_labels()
-        figure.legend(
-            handles, labels, loc="outside lower center", ncols=len(labels), frameon=False, fontsize=9
-        )
+        key_below(figure, axes[0].get_legend_handles_labels()[0])
     return figure
 
 

@@ -7,12 +7,13 @@ as formula markup (`parse_math=False`).
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from textwrap import wrap
 from typing import Final
 
 import matplotlib as mpl
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -46,6 +47,17 @@ def new_figure(width: float, height: float, title: str) -> Figure:
     lines = wrap(title, int(width * LETTERS_PER_INCH), break_on_hyphens=False)
     figure.suptitle("\n".join(lines), color=INK, fontsize=12, parse_math=False)
     return figure
+
+
+def key_below(figure: Figure, entries: Sequence[Artist]) -> None:
+    """Name entries by their labels below what a figure shows, in as many columns as it has room for."""
+    for columns in range(max(len(entries), 1), 0, -1):
+        legend = figure.legend(
+            handles=entries, ncols=columns, loc="outside lower center", frameon=False, fontsize=9
+        )
+        if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
+            break
+        legend.remove()
 
 
 def clean(axes: Axes) -> None:

@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 
 from evodesign.mechanics.agent import HUMAN, ROBOT
 from evodesign.report.figures.faces import faces_of, seen_triangles
-from evodesign.report.figures.paint import AGENTS, GROUND_FORCE, HAND_FORCE, INK, PALE, new_figure
+from evodesign.report.figures.paint import AGENTS, GROUND_FORCE, HAND_FORCE, INK, PALE, key_below, new_figure
 from evodesign.report.scene_models import LOAD, ContactWrench, PlacedScene
 from evodesign.tree.mesh_write import in_frame, vertices_of
 
@@ -250,11 +250,4 @@ def _key(figure: Figure, axes: Axes, stages: Sequence[PlacedScene], longest: Map
         )[0]
         for kind, force in longest.items()
     ]
-    one_row = figure.get_figwidth() > 7.5
-    figure.legend(
-        handles=[*who, *arrows],
-        loc="outside lower center",
-        ncols=len(who) + len(arrows) if one_row else 2,
-        frameon=False,
-        fontsize=9,
-    )
+    key_below(figure, [*who, *arrows])

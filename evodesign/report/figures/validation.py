@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evodesign.human.measured_posture import HumanPosture
-from evodesign.report.figures.paint import INK, clean, new_figure, write_figure
+from evodesign.report.figures.paint import INK, clean, key_below, new_figure, write_figure
 from evodesign.validation.compare import POSTURES, ComparedCase
 from evodesign.validation.measured import EMPTY, HANGING, HOLDING
 from evodesign.validation.posed import CHAIN, Places
@@ -100,7 +100,5 @@ def _mark(panel: Axes, marker: str, color: str, hollow: bool, moment: float, hei
 
 
 def _legend(figure: Figure, axes: Axes, *entries: tuple[str, str]) -> None:
-    lines: Iterable[object] = [
-        axes.plot([], [], color=color, linewidth=2.2, label=label)[0] for label, color in entries
-    ]
-    figure.legend(handles=[*lines], loc="outside lower center", ncols=len(entries), frameon=False, fontsize=9)
+    lines = [axes.plot([], [], color=color, linewidth=2.2, label=label)[0] for label, color in entries]
+    key_below(figure, lines)

@@ -15,7 +15,7 @@ from evodesign.problem.build import DesignProblem
 from evodesign.records import CaseDetail
 from evodesign.report.figures.faces import faces_of
 from evodesign.report.figures.joint_torques import joint_torques, torque_boxes
-from evodesign.report.figures.paint import write_figure
+from evodesign.report.figures.paint import key_below, new_figure, write_figure
 from evodesign.report.figures.posture_figure import Camera, posture_figure
 from evodesign.report.scene_models import placed_scene
 from evodesign.tasks import Lift
@@ -44,6 +44,25 @@ def test_boxes_span_the_quartiles_and_show_the_median() -> None:
         assert medians == pytest.approx([float(np.median(values)) for values in given])
         dots = [sorted(cloud.get_offsets()[:, 1].tolist()) for cloud in axes.collections]
         assert dots == [sorted(values) for values in given]
+
+
+@pytest.mark.parametrize("width", [3.0, 5.2, 7.6, 8.1, 12.0])
+def test_a_key_of_any_length_stays_within_figures_of_any_width(width: float) -> None:
+    figure = new_figure(width, 3.0, "")
+    axes = figure.subplots()
+    words = [
+        "robot",
+        "person",
+        "load",
+        "force on the feet, the largest 372 N",
+        "force on the hands, the largest 39 N",
+    ]
+    key_below(figure, [axes.plot([], [], label=label)[0] for label in words])
+    figure.draw_without_rendering()
+    (legend,) = figure.legends
+    box = legend.get_window_extent()
+    assert [text.get_text() for text in legend.get_texts()] == words
+    assert 0.0 <= box.x0 < box.x1 <= figure.bbox.width
 
 
 def test_joint_figure_puts_each_torque_on_its_row() -> None:
