@@ -187,6 +187,18 @@ def test_soles_of_meshes_are_those_of_their_vertices_or_guessed_from_the_inertia
     assert "to be checked" in guessed.why_soles
 
 
+def test_soles_and_palms_are_fixed_to_feet_and_hands_that_no_joint_moves() -> None:
+    """What is fixed to a shank or forearm does not grow with it, so the contact must be of what touches."""
+    tree = humanoid(Build())
+    still = [
+        replace(each, kind=JointKind.FIXED) if re.search("ankle|wrist", each.name) else each
+        for each in tree.joints
+    ]
+    found = contacts(body_plan(replace(tree, joints=tuple(still))))
+    for side in ("left", "right"):
+        assert (found.soles[side].link, found.hands[side].link) == (f"{side}_foot", f"{side}_hand")
+
+
 def test_frames_of_the_hands_own_are_taken() -> None:
     tree = humanoid(Build())
     named = [Link(f"{side}_palm_frame") for side in ("left", "right")]
