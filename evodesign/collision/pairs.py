@@ -7,8 +7,8 @@ Exempt are, of the agent as its file has it,
     touching       two that are in touch while all joints are at zero, and in at least a tenth of its
                    postures: arms that hang beside the hips are apart in nearly all others, and stay checked
     mostly         two that overlap in most of its postures
-    holding        a hand and the load that it holds, and so links that begin less than a hand's length
-                   from the grasp, as wrists do, and fingers that stand still
+    holding        a hand and the load that it holds: the link to which the grasp is fixed, links that begin
+                   less than a hand's length from it, as wrists do, and fingers that stand still
 
 Where a pair is exempt, so is its mirror image. No design is asked: what only a resized robot brings together
 is a fault of that design (`built_in_pairs`).
@@ -161,7 +161,7 @@ def feet_pairs(
 
 
 def holding_links(tree: Tree, joints: Collection[str], hands: Iterable[str]) -> frozenset[str]:
-    """Links that may touch the load: those of hands, and the links near the grasp.
+    """Links that may touch the load: those to which the grasp is fixed, and the links near it.
 
     Args:
         tree: of the agent, unscaled.
@@ -172,11 +172,13 @@ def holding_links(tree: Tree, joints: Collection[str], hands: Iterable[str]) -> 
     found: set[str] = set()
     for hand in hands:
         grasp, name = np.array(frames[hand].translation, float), hand
-        while np.linalg.norm(np.array(frames[name].translation, float) - grasp) < HAND:
+        fixed = True
+        while fixed or np.linalg.norm(np.array(frames[name].translation, float) - grasp) < HAND:
             found |= {name, *_still_below(tree, joints, name)}
             if name not in tree.parent_joint:
                 break
-            name = tree.parent_joint[name].parent
+            joint = tree.parent_joint[name]
+            fixed, name = fixed and joint.kind is JointKind.FIXED, joint.parent
     return frozenset(found)
 
 

@@ -179,6 +179,18 @@ def test_hands_hold_and_forearms_do_not(problem: DesignProblem) -> None:
     assert "LeftForeArm" not in holding_links(person.tree, person.joints, person.hand_frames)
 
 
+def test_a_forearm_without_a_wrist_holds_with_the_palm_at_its_far_end() -> None:
+    links = [Link(n, own_inertia=Inertia(1.0)) for n in ("root", "upper", "forearm", "stump", "palm")]
+    joints = tuple(
+        Joint(each.name, kind, parent.name, each.name, Placement(translation=(0.0, 0.0, -0.25)))
+        for kind, (parent, each) in zip(
+            [JointKind.REVOLUTE] * 2 + [JointKind.FIXED] * 2, pairwise(links), strict=True
+        )
+    )
+    tree = Tree("arm", tuple(links), joints)
+    assert holding_links(tree, ["upper", "forearm"], ["palm"]) == {"palm", "stump", "forearm"}
+
+
 def test_fingers_that_stand_still_are_part_of_the_hand() -> None:
     """A gripper of two fingers that reach farther than a hand's length and lie in each other."""
     names = ["arm", "hand", *(f"{side} {part}" for side in ("left", "right") for part in "abc")]
