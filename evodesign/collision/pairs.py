@@ -2,13 +2,13 @@
 
 Exempt are, of the agent as its file has it,
 
-    joined         two links that one joint joins, or parts that are fixed to these
+    joined         two links that one joint of one or more axes joins, or parts that are fixed to these
     still          two between which no joint moves
     touching       two that are in touch while all joints are at zero, and in at least a tenth of its
                    postures: arms that hang beside the hips are apart in nearly all others, and stay checked
     mostly         two that overlap in most of its postures
-    holding        a hand and the load that it holds, and so links that begin less than a hand's length
-                   from the grasp, as wrists do, and fingers that stand still
+    holding        a hand and the load that it holds: the link to which the grasp is fixed, links that begin
+                   less than a hand's length from it, as wrists do, and fingers that stand still
 
 Where a pair is exempt, so is its mirror image. No design is asked: what only a resized robot brings together
 is a fault of that design (`built_in_pairs`).
@@ -28,7 +28,7 @@ from evodesign.collision.clearance import SolidBodies, places_of
 from evodesign.collision.random_postures import images_of, shares_of_postures, with_image
 from evodesign.collision.rules import FLOOR, LOAD, PARTNER, BodyPair
 from evodesign.tree.frames import link_frames
-from evodesign.tree.model import JointKind, Tree
+from evodesign.tree.model import JointKind, Link, Tree
 from evodesign.tree.once_per_tree import once_per_tree
 
 HAND = 0.15
@@ -161,7 +161,7 @@ def feet_pairs(
 
 
 def holding_links(tree: Tree, joints: Collection[str], hands: Iterable[str]) -> frozenset[str]:
-    """Links that may touch the load: those of hands, and the links near the grasp.
+    """Links that may touch the load: those to which the grasp is fixed, and the links near it.
 
     Args:
         tree: of the agent, unscaled.
@@ -172,11 +172,13 @@ def holding_links(tree: Tree, joints: Collection[str], hands: Iterable[str]) -> 
     found: set[str] = set()
     for hand in hands:
         grasp, name = np.array(frames[hand].translation, float), hand
-        while np.linalg.norm(np.array(frames[name].translation, float) - grasp) < HAND:
+        fixed = True
+        while fixed or np.linalg.norm(np.array(frames[name].translation, float) - grasp) < HAND:
             found |= {name, *_still_below(tree, joints, name)}
             if name not in tree.parent_joint:
                 break
-            name = tree.parent_joint[name].parent
+            joint = tree.parent_joint[name]
+            fixed, name = fixed and joint.kind is JointKind.FIXED, joint.parent
     return frozenset(found)
 
 
@@ -217,9 +219,15 @@ def _between(tree: Tree, pair: BodyPair) -> frozenset[str]:
 
 
 def is_joined(tree: Tree, pair: BodyPair) -> bool:
-    """Whether one joint joins two links, or none, beside fixed ones."""
-    kinds = (tree.joint_by_name[name].kind for name in _between(tree, pair))
-    return sum(kind is not JointKind.FIXED for kind in kinds) <= 1
+    """Whether one joint joins two links, or none, beside fixed ones; it may have several axes."""
+    between = (tree.joint_by_name[name] for name in _between(tree, pair))
+    moved = [joint.child for joint in between if joint.kind is not JointKind.FIXED]
+    return sum(child in pair or not _is_nothing(tree.link_by_name[child]) for child in moved) <= 1
+
+
+def _is_nothing(link: Link) -> bool:
+    """Whether a link has neither mass nor shape, as between the axes of a joint of several."""
+    return not (link.inertia.mass or link.solids or link.looks or link.meshes)
 
 
 def _is_still(tree: Tree, joints: Collection[str], pair: BodyPair) -> bool:

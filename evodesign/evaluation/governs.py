@@ -98,8 +98,9 @@ def _actuators(problem: DesignProblem, joints: Mapping[str, Mapping[str, Any]]) 
     groups: dict[str, list[str]] = {}
     for group, row in most.items():
         torque = "peak torque" if row["asked_by"] in alone else "rated torque"
-        smallest = row["rated_torque_n_m"] <= BOUNDS[0]
-        by = f"{torque} ({row['asked_by']})" if row["asked_by"] and not smallest else "the smallest size"
+        by = f"{torque} ({row['asked_by']})" if row["asked_by"] else "nothing that was solved"
+        if row["rated_torque_n_m"] <= BOUNDS[0]:
+            by = "the smallest size"
         groups.setdefault(by, []).append(group)
     for by, members in groups.items():
         yield f"{by} governs {', '.join(members)}"

@@ -199,7 +199,8 @@ def _named_side(one: Limb, other: Limb) -> int:
     for left, right in SIDE_NAMES:
         for first, second, sign in ((one.end.name, other.end.name, 1), (other.end.name, one.end.name, -1)):
             ends = [match.end() for match in re.finditer(left, first)]
-            if any(first[: end - len(left)] + right + first[end:] == second for end in ends):
+            others = [first[: end - len(left)] + right + first[end:] for end in ends]
+            if second in (*others, first.replace(left, right)) and ends:
                 return sign
     return 0
 
@@ -216,5 +217,8 @@ def _bent(welded: WeldedTree, leg: Limb, ahead: Vector) -> float:
     if max(joint.upper, -joint.lower) < ONE_WAY * min(joint.upper, -joint.lower):
         return 0.0
     angle = BEND if joint.upper > -joint.lower else -BEND
-    bent = link_frames(welded.tree, Placement(), {joint.name: angle})[leg.end.name].translation
-    return -_along(bent, leg.end.origin, ahead)
+    straight, bent = (
+        link_frames(welded.tree, Placement(), {joint.name: each})[leg.end.name] for each in (0.0, angle)
+    )
+    center = leg.end.inertia.center
+    return -_along((bent @ straight.inverse).apply(center), center, ahead)

@@ -48,6 +48,9 @@ SMALLEST_SOLE = 0.005
 LIKENESS = 0.03
 """Largest distance of a point from the mirror image of the other side's that is a matter of accuracy [m]."""
 
+ALIKE = 0.005
+"""Distances of links from a point that are no more apart count as equal [m]."""
+
 PALM = re.compile(r"palm|grasp|tcp|tool", re.IGNORECASE)
 """Names of frames that meet a load."""
 
@@ -206,8 +209,11 @@ def _alike(points: Mapping[str, Sequence[float]]) -> dict[str, Vector]:
 
 
 def _new_frame(welded: WeldedTree, limb: Limb, name: str, at: Vector, axes: Matrix) -> GuessedContact:
-    """A frame at a point of the root's frame, with axes there, fixed to the heaviest link of a limb's end."""
-    link = welded.heaviest(limb.end)
+    """A frame at a point of the root's frame, with axes there, fixed to the nearest link of a limb's end.
+
+    A foot without an ankle does not grow with the shank that it is fixed to, and so its sole must not either.
+    """
+    link = _nearest(welded, limb.end, at)
     while name in welded.tree.link_by_name:
         name += "_"
     return GuessedContact(name, link, welded.places[link].inverse @ Placement(axes, at))
@@ -220,17 +226,32 @@ def frame_xyz_rpy(contact: GuessedContact) -> tuple[tuple[float, ...], tuple[flo
     return xyz, rpy
 
 
+def _nearest(welded: WeldedTree, body: WeldedBody, at: Vector) -> str:
+    """The link of a body whose box, along the root's axes, is nearest to a point; of several the heaviest."""
+    points = {name: found for name in body.links if len(found := _points_of(welded, name))}
+    away = {
+        name: float(np.linalg.norm(np.clip(at, each.min(axis=0), each.max(axis=0)) - at))
+        for name, each in points.items()
+    }
+    near = [name for name in away if away[name] < min(away.values()) + ALIKE]
+    masses = {name: float(welded.tree.link_by_name[name].inertia.mass) for name in near or body.links}
+    return max(masses, key=lambda name: masses[name])
+
+
 def _points(welded: WeldedTree, body: WeldedBody) -> np.ndarray:
     """Points of a body in the root's frame, one per row: of a link's meshes, or else of its shapes."""
-    found = [np.empty((0, 3))]
-    for name in body.links:
-        link, place = welded.tree.link_by_name[name], welded.places[name]
+    return np.vstack([_points_of(welded, name) for name in body.links])
+
+
+def _points_of(welded: WeldedTree, name: str) -> np.ndarray:
+    """The same of one link."""
+    link, place, found = welded.tree.link_by_name[name], welded.places[name], [np.empty((0, 3))]
+    if link.shown:
+        found += [in_frame(vertices_of(mesh), place) for mesh in link.shown]
+    else:
         shapes = [(solid.shape, solid.link_from_solid) for solid in link.solids]
         shapes += [(look.shape, look.link_from_look) for look in link.looks]
-        if link.shown:
-            found += [in_frame(vertices_of(mesh), place) for mesh in link.shown]
-        else:
-            found += [in_frame(_outline(shape), place @ at) for shape, at in shapes]
+        found += [in_frame(_outline(shape), place @ at) for shape, at in shapes]
     return np.vstack(found)
 
 

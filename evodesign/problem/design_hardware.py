@@ -122,7 +122,7 @@ def _actuator(
         if way in given:
             ends = _ends(getattr(table, way), f"{key}.{way}", source)
             if kind is ParameterKind.MARGIN and not 1.0 <= ends[0] <= ends[1] < math.inf:
-                found = f"{ends[0]:g} to {ends[1]:g}"
+                found = " to ".join(dict.fromkeys(f"{end:g}" for end in ends))
                 raise InputError(source.path, f"{key}.{way}", "numbers of at least 1", found)
             gear = _gear(table.gear, f"{key}.gear", source)
             law = _friction_law(gear, source) if friction else None

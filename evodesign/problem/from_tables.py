@@ -101,8 +101,9 @@ def space_of(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSp
         _check_parameter(parameter, key, source, tree, seen)
     space = DesignSpace((*parameters, *joints), walls_of(tables, source, tree))
     if space.margins and tables.task.lift:
-        key = f"design.{parameters[space.margins[0]].kind}"
-        raise InputError(source.path, key, "rated torques where a load is lifted, no margins", "a margin")
+        position = [table.margin is None for table in tables.design.actuator].index(False)
+        wanted = "rated_torque_n_m or models, as a load is lifted"
+        raise InputError(source.path, f"design.actuator[{position}].margin", wanted, "a margin")
     try:
         space.check(tree)
     except InputError as error:
@@ -133,8 +134,9 @@ def _check_parameter(
     seen: dict[tuple[ParameterKind, str], str],
 ) -> None:
     if parameter.lower >= parameter.upper and parameter.kind is not ParameterKind.MARGIN:
-        wanted = f"less than upper ({parameter.upper:g})"
-        raise InputError(source.path, f"{key}.lower", wanted, f"{parameter.lower:g}")
+        unit = "_kg_per_m3" if parameter.kind is ParameterKind.DENSITY else ""
+        wanted = f"less than upper{unit} ({parameter.upper:g})"
+        raise InputError(source.path, f"{key}.lower{unit}", wanted, f"{parameter.lower:g}")
     for position, link in enumerate(parameter.links):
         where = f"{key}.links[{position}]"
         refuse_unknown(source, where, "link", link, tree.link_by_name, tree.name)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from evodesign.body.placement import Vector
 from evodesign.body.shape import Box, Cylinder, Shape, Sphere
+from evodesign.tree.model import Look, Mesh
 from evodesign.tree.surface import Surface, surface_of
 
 SIDES, ARCS = 40, 8
@@ -54,6 +55,12 @@ def scaled_surface(shape: Shape) -> tuple[str, Surface, Vector]:
             return "cylinder", _unit("cylinder"), (radius, radius, length)
         case Box():
             return "box", _unit("box"), shape.sides
+
+
+def mesh_of_look(look: Look) -> Mesh:
+    """A shape that is only seen as a mesh."""
+    kind, surface, factors = scaled_surface(look.shape)
+    return Mesh(kind, factors, look.link_from_look, surface=surface)
 
 
 @functools.cache

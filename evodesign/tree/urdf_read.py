@@ -35,7 +35,7 @@ from evodesign.body.shape import Box, Cylinder, Shape, Solid, Sphere
 from evodesign.errors import ModelError, listed
 from evodesign.tree.frames import parent_from_child
 from evodesign.tree.model import Joint, JointKind, Link, Look, Mesh, Tree
-from evodesign.tree.triangulation import capsule_surface, scaled_surface
+from evodesign.tree.triangulation import capsule_surface, mesh_of_look
 from evodesign.tree.unit_doubts import unit_doubts
 from evodesign.tree.urdf_check import checked_urdf
 from evodesign.tree.urdf_write import UNLIMITED
@@ -118,12 +118,7 @@ class Shapes:
     @property
     def all_meshes(self) -> tuple[Mesh, ...]:
         """The meshes, and the primitives beside them as such."""
-        return (*self.meshes, *map(_as_mesh, self.primitives)) if self.meshes else ()
-
-
-def _as_mesh(look: Look) -> Mesh:
-    kind, surface, factors = scaled_surface(look.shape)
-    return Mesh(kind, factors, look.link_from_look, surface=surface)
+        return (*self.meshes, *map(mesh_of_look, self.primitives)) if self.meshes else ()
 
 
 def _link(link: etree._Element, rule: InertiaRule) -> Link:

@@ -107,3 +107,19 @@ def test_less_than_two_runs_are_refused(runs: list[Path], chosen: list[int], wor
 def test_figure_that_cannot_be_written_is_named(runs: list[Path], tmp_path: Path) -> None:
     with pytest.raises(InputError, match="--plot: wanted a file that can be written"):
         compare(runs[:2], json=False, plot=tmp_path / "none" / "figure.html")
+
+
+def test_runs_whose_directories_have_one_name_are_told_apart(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    places = [Path(name) / "run" for name in ("ours", "theirs")]
+    for seed, place in enumerate(places):
+        place.parent.mkdir()
+        logged(place, seed, "nsga2", 8)
+    compare(places, json=False, plot=None)
+    shown = capsys.readouterr().out
+    runs, best = shown.split("Best designs of all runs")
+    for table in (runs, best):
+        assert {str(place) for place in places} & set(table.replace("│", " ").split())
+    assert all(str(place) in runs for place in places)

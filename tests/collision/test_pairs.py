@@ -25,6 +25,7 @@ from evodesign.collision.pairs import (
     exempt_pairs,
     feet_pairs,
     holding_links,
+    is_joined,
 )
 from evodesign.problem.build import DesignProblem
 from evodesign.tree.model import Joint, JointKind, Link, Look, Tree
@@ -177,6 +178,31 @@ def test_hands_hold_and_forearms_do_not(problem: DesignProblem) -> None:
     assert not holding & {"l_forearm", "chest"}
     assert "LeftHand" in holding_links(person.tree, person.joints, person.hand_frames)
     assert "LeftForeArm" not in holding_links(person.tree, person.joints, person.hand_frames)
+
+
+def test_a_forearm_without_a_wrist_holds_with_the_palm_at_its_far_end() -> None:
+    links = [Link(n, own_inertia=Inertia(1.0)) for n in ("root", "upper", "forearm", "stump", "palm")]
+    joints = tuple(
+        Joint(each.name, kind, parent.name, each.name, Placement(translation=(0.0, 0.0, -0.25)))
+        for kind, (parent, each) in zip(
+            [JointKind.REVOLUTE] * 2 + [JointKind.FIXED] * 2, pairwise(links), strict=True
+        )
+    )
+    tree = Tree("arm", tuple(links), joints)
+    assert holding_links(tree, ["upper", "forearm"], ["palm"]) == {"palm", "stump", "forearm"}
+
+
+def test_axes_with_nothing_between_them_are_one_joint_and_with_a_link_between_two() -> None:
+    """A waist of two hinges, as of one body of an MJCF; both balls of 0.05 m are 1 mm apart."""
+    ball = (Look(Sphere(0.05), Placement()),)
+    trunk, hips = (Link(name, own_inertia=Inertia(1.0), looks=ball) for name in ("trunk", "hips"))
+    for between, joined in ((Link("between"), True), (Link("between", own_inertia=Inertia(0.1)), False)):
+        joints = (
+            Joint("yaw", JointKind.REVOLUTE, "trunk", "between", Placement(), (0.0, 0.0, 1.0)),
+            Joint("roll", JointKind.REVOLUTE, "between", "hips", Placement(translation=(0.0, 0.0, -0.101))),
+        )
+        tree = Tree("waist", (trunk, between, hips), joints)
+        assert is_joined(tree, ("trunk", "hips")) is joined
 
 
 def test_fingers_that_stand_still_are_part_of_the_hand() -> None:

@@ -9,7 +9,7 @@ import msgspec
 import pytest
 
 from evodesign.evaluation.bill import bill_of_materials
-from evodesign.evaluation.governs import governing
+from evodesign.evaluation.governs import governing, sentences
 from evodesign.problem.build import DesignProblem, build_problem
 from evodesign.problem.source import read_source
 from tests.report.scenes import random_detail
@@ -43,6 +43,17 @@ def test_load_cases_count_and_every_group_of_joints_is_named(repository: Path) -
     assert 0.0 < sum(row["deflection_share"] for row in beams.values()) < 1.0
     named = [group for part in actuators.split("; ") for group in part.partition("governs ")[2].split(", ")]
     assert sorted(named) == sorted({row["actuator"] for row in found["joints"].values()})
+
+
+def test_without_postures_and_load_cases_nothing_that_was_solved_governs_actuators(repository: Path) -> None:
+    problem, found = bill(repository)
+    sizes = {joint: row | {"asked_by": None, "share": 0.0} for joint, row in found["joints"].items()}
+    joint = next(iter(sizes))
+    sizes = {name: row for name, row in sizes.items() if row["actuator"] == sizes[joint]["actuator"]}
+    for rated, by in ((10.0, "nothing that was solved"), (2.5, "the smallest size")):
+        rows = {name: row | {"rated_torque_n_m": rated} for name, row in sizes.items()}
+        said = list(sentences(problem, {"links": {}, "joints": rows}))
+        assert said == [f"actuators: {by} governs {sizes[joint]['actuator']}"]
 
 
 def test_stiffness_governs_links_with_a_share_where_the_hands_reach_their_bound(repository: Path) -> None:

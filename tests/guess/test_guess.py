@@ -91,6 +91,20 @@ def test_a_robot_whose_root_is_its_chest_has_the_same_limbs_and_joints() -> None
     assert named == {group.name: group.links for group in groups(usual)}
 
 
+@pytest.mark.parametrize("facing", Facing)
+def test_knees_say_where_a_robot_looks_whose_feet_are_its_shanks(facing: Facing) -> None:
+    tree = humanoid(Build(YAWS[facing], named=left, toe=0.0))
+    joints = [replace(each, kind=JointKind.FIXED) if "ankle" in each.name else each for each in tree.joints]
+    plan = body_plan(replace(tree, joints=tuple(joints)))
+    assert (plan.facing, plan.why) == (facing, "knees say so")
+
+
+def test_sides_that_are_named_twice_say_where_it_looks() -> None:
+    build = Build(named=lambda side: f"{side}_leg_{side}_", knee=NO_KNEE, toe=0.0)
+    plan = body_plan(humanoid(build))
+    assert (plan.facing, plan.why) == (Facing.FORWARD, "names of the sides say so")
+
+
 def test_nothing_says_where_it_looks() -> None:
     plan = body_plan(humanoid(Build(named=left, knee=NO_KNEE, toe=0.0)))
     assert (plan.facing, plan.why) == (None, "knees, names and feet do not say where it looks")
@@ -171,6 +185,18 @@ def test_soles_of_meshes_are_those_of_their_vertices_or_guessed_from_the_inertia
     guessed = contacts(body_plan(with_feet(tree, feet)))
     assert guessed.sole_size == pytest.approx((0.24, 0.1), abs=1e-3), "a box has the box's inertia"
     assert "to be checked" in guessed.why_soles
+
+
+def test_soles_and_palms_are_fixed_to_feet_and_hands_that_no_joint_moves() -> None:
+    """What is fixed to a shank or forearm does not grow with it, so the contact must be of what touches."""
+    tree = humanoid(Build())
+    still = [
+        replace(each, kind=JointKind.FIXED) if re.search("ankle|wrist", each.name) else each
+        for each in tree.joints
+    ]
+    found = contacts(body_plan(replace(tree, joints=tuple(still))))
+    for side in ("left", "right"):
+        assert (found.soles[side].link, found.hands[side].link) == (f"{side}_foot", f"{side}_hand")
 
 
 def test_frames_of_the_hands_own_are_taken() -> None:

@@ -203,7 +203,11 @@ def test_designs_name_torques_walls_and_models() -> None:
         (SHOULDER + SIZES + SPIN.replace('["spin"]', '["l_shoulder"]') + SIZES, ["a joint in one actuator"]),
         (SHOULDER.replace("l_shoulder", "l_sholder") + SIZES, ["joints[0]", "did you mean 'l_shoulder'?"]),
         (SHOULDER + "margin = [0.5, 2.0]\n", ["design.actuator[0].margin", "of at least 1", "0.5"]),
-        (SHOULDER + "margin = 0.9\n", ["design.actuator[0].margin", "at least 1", "0.9"]),
+        (SHOULDER + "margin = 0.9\n", ["design.actuator[0].margin", "of at least 1, found 0.9"]),
+        (
+            SHOULDER + "margin = 1.5\n[[task.lift]]\nfrom_m = 0.8\nto_m = 1.0\n",
+            ["design.actuator[0].margin", "rated_torque_n_m or models, as a load is lifted", "a margin"],
+        ),
         (SHOULDER + "margin = nan\n", ["design.actuator[0].margin", "nan"]),
         (SHOULDER + "margin = inf\n", ["design.actuator[0].margin", "inf"]),
         (SHOULDER + "margin = [nan, 2.0]\n", ["design.actuator[0].margin", "nan"]),

@@ -91,6 +91,11 @@ def test_check_shows_the_materials_with_their_sources(small: DesignProblem) -> N
     [
         ("", "", ["design.density[0].lower_kg_per_m3", "or materials", "nothing"]),
         ("lower_kg_per_m3 = 5.0\n", "", ["design.density[0].upper_kg_per_m3", "or materials", "nothing"]),
+        (
+            "lower_kg_per_m3 = 5.0\nupper_kg_per_m3 = 4.0\n",
+            "",
+            ["density[0].lower_kg_per_m3: wanted less than upper_kg_per_m3 (4), found 5"],
+        ),
         (BOUNDS + CHOSEN, OWN, ["design.density[0].materials", "either materials or bounds", "both"]),
         (CHOSEN, "", ["materials[1]", "'shell'", "a material of the catalogue"]),
         ('materials = ["aluminum_6061", "abs"]\n', "", ["materials[0]", "did you mean 'aluminium_6061'?"]),

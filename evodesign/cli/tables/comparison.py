@@ -5,7 +5,7 @@ from __future__ import annotations
 import statistics
 from collections.abc import Iterator
 
-from evodesign.analysis.comparison import Comparison, best_designs
+from evodesign.analysis.comparison import Compared, Comparison, best_designs
 from evodesign.analysis.comparison_json import hypervolume_summary
 from evodesign.cli.output import heading
 from evodesign.cli.tables.table import FittedTable, names, numbers, titled
@@ -64,7 +64,7 @@ def _runs(comparison: Comparison) -> FittedTable:
     table = titled("Runs", [*names("run", "search"), *numbers("seed", "front", "hypervolume", *best)])
     for each in comparison.runs:
         table.add_row(
-            each.run.directory.name,
+            _called(comparison, each),
             each.search,
             each.run.header.search.seed,
             len(each.front),
@@ -72,6 +72,13 @@ def _runs(comparison: Comparison) -> FittedTable:
             *(each.best.get(objective.name) for objective in comparison.objectives),
         )
     return table
+
+
+def _called(comparison: Comparison, run: Compared) -> str:
+    """A run's directory: its last name, or all of it where runs share that one."""
+    directory = run.run.directory
+    names = [each.run.directory.name for each in comparison.runs]
+    return directory.name if names.count(directory.name) == 1 else f"{directory}"
 
 
 def _tests(comparison: Comparison) -> FittedTable:
@@ -97,7 +104,7 @@ def _best(comparison: Comparison) -> FittedTable:
         values = each.evaluation.assessment.objectives
         table.add_row(
             each.reason,
-            each.run.run.directory.name,
+            _called(comparison, each.run),
             each.evaluation.number,
             *(values[objective.name] for objective in comparison.objectives),
         )

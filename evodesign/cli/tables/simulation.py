@@ -133,6 +133,10 @@ def lift_tables(title: str, solutions: Mapping[tuple[str, str], LiftSolution]) -
 
 
 def _efforts(title: str, solution: LiftSolution) -> FittedTable:
+    if not solution.efforts:
+        table = titled(title, [*names("status", "reason")])
+        table.add_row(f"{solution.status}", solution.reason)
+        return table
     headers = ["mean torque [N m]", "peak torque [N m]", "static share", "work [J]", "peak power [W]"]
     disturbances = {name: None for effort in solution.efforts.values() for name in effort.disturbed}
     headers += [f"peak torque, {name} [N m]" for name in disturbances]

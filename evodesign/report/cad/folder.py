@@ -37,7 +37,7 @@ def cad_files(tree: Tree, materials: Mapping[str, str], title: str, stamp: str) 
         files[f"{part.file}.stl"] = _stl(*kernel.triangles(product.body))
         products.append(product)
     for name, stem in parts.meshes.items():
-        files[f"{stem}.stl"] = _mesh_stl(tree.link_by_name[name])
+        files[f"{stem}.stl"] = _mesh_stl(parts.tree.link_by_name[name])
     products += _motors_and_axes(parts)
     if products:
         files["assembly.step"] = kernel.step_file(tree.name, products, stamp)

@@ -12,13 +12,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from evodesign.body.placement import Matrix, Placement, Vector, perpendicular, transpose
 from evodesign.body.shape import Cylinder, Solid
 from evodesign.hardware.actuators import Actuator
 from evodesign.tree.frames import link_frames
 from evodesign.tree.model import Joint, JointKind, Link, Tree
+from evodesign.tree.triangulation import mesh_of_look
 
 AXIS_LENGTH = 0.2
 """Length of the line [m] that stands for the axis of a joint, half on each side."""
@@ -95,12 +96,12 @@ class Parts:
     """All parts of a robot.
 
     Args:
-        tree: of the robot, numbers.
+        tree: of the robot, numbers; shapes without mass are meshes.
         links: those with solids.
         motors: of joints with actuators.
         axes: of joints that move.
-        meshes: stems of files of links that meshes alone show, by link.
-        left_out: names of links that have mass and neither solids nor meshes.
+        meshes: stems of files of links that meshes alone show, or shapes without mass, by link.
+        left_out: names of links that have mass and no shape.
     """
 
     tree: Tree
@@ -122,6 +123,7 @@ def parts_of(tree: Tree, materials: Mapping[str, str]) -> Parts:
         tree: of a design, numbers.
         materials: names by link, of those that have one.
     """
+    tree = replace(tree, links=tuple(_with_meshes(link) for link in tree.links))
     frames = link_frames(tree, Placement(), {})
     stems = _stems(link.name for link in tree.links)
     solid = [link for link in tree.links if link.solids]
@@ -153,6 +155,12 @@ def parts_of(tree: Tree, materials: Mapping[str, str]) -> Parts:
             if not link.solids and link.name not in shown and float(link.mass) > 0.0
         ),
     )
+
+
+def _with_meshes(link: Link) -> Link:
+    """A link whose shapes have no mass with meshes in their place; any other as it is."""
+    seen = () if link.solids or link.meshes else link.looks
+    return replace(link, meshes=tuple(map(mesh_of_look, seen)), looks=()) if seen else link
 
 
 def _along(actuator: Actuator) -> Placement:

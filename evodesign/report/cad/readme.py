@@ -82,7 +82,8 @@ def _without_bodies(parts: Parts) -> list[str]:
     found = []
     if parts.meshes:
         names = ", ".join(f"{_code(name)} (`{stem}.stl`)" for name, stem in parts.meshes.items())
-        found.append(f"Meshes alone show these links, so there is an STL and no STEP of them: {names}.")
+        why = "Meshes alone show these links, or shapes that do not make their mass"
+        found.append(f"{why}, so there is an STL and no STEP of them: {names}.")
     if parts.left_out:
         names = ", ".join(_code(name) for name in parts.left_out)
         found.append(f"These links have a mass and no shape, so they are left out: {names}.")

@@ -32,3 +32,12 @@ def test_each_disturbance_has_the_peak_torques_of_both_agents(capsys: pytest.Cap
         cells = [cell.strip() for cell in row.strip("│").split("│")]
         assert cells[2] == peak
         assert cells[-1] == disturbed
+
+
+def test_a_lift_without_torques_says_why(capsys: pytest.CaptureFixture[str]) -> None:
+    solution = LiftSolution(Lift(0.8, 1.2, 1.5), Status.ITERATION_LIMIT, "no posture found at 0.8 m")
+    for table in lift_tables("a lift", {("", ""): solution}):
+        console().print(table)
+    shown = capsys.readouterr().out
+    assert "iteration limit" in shown
+    assert "no posture found at 0.8 m" in shown

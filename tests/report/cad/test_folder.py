@@ -5,13 +5,19 @@ from __future__ import annotations
 import io
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import trimesh
 
+from evodesign.body.placement import Placement
+from evodesign.body.shape import Box
 from evodesign.errors import on_one_line
 from evodesign.report.cad.folder import cad_files
+from evodesign.report.cad.outlines import FRONT, link_outlines
+from evodesign.report.cad.parts import parts_of
+from evodesign.tree.model import Look
 from tests.report.cad.press import HOSTILE, press
 from tests.report.cad.reread import measured, parts_in, solids_in
 
@@ -70,6 +76,21 @@ def test_a_mesh_is_written_as_triangles_in_millimetres_and_what_has_no_shape_is_
     assert "an STL and no STEP of them: `cover` (`cover.stl`)." in readme
     assert "no shape, so they are left out: `bolt`." in readme
     assert "`tip`" not in readme
+
+
+def test_a_link_whose_shapes_do_not_make_its_mass_is_written_and_drawn_as_they_are_seen() -> None:
+    seen = Look(Box(0.02, 0.04, 0.06), Placement(translation=(0.0, 0.0, 0.9)))
+    tree = press()
+    links = [replace(link, looks=(seen,)) if link.name == "bolt" else link for link in tree.links]
+    shown = replace(tree, links=tuple(links))
+    files = cad_files(shown, {}, "a press", STAMP)
+    bolt = trimesh.load(io.BytesIO(files["bolt.stl"]), file_type="stl")
+    np.testing.assert_allclose(bolt.bounds, [[-10.0, -20.0, 870.0], [10.0, 20.0, 930.0]], atol=1e-3)
+    text = files["README.md"].decode()
+    assert "an STL and no STEP of them: `cover` (`cover.stl`), `bolt` (`bolt.stl`)." in text
+    assert "left out" not in text
+    outlines = {outline.name: outline for outline in link_outlines(parts_of(shown, {}), FRONT)}
+    assert outlines["bolt"].corners[:, 1].max() == pytest.approx(0.93)
 
 
 def test_names_are_text_in_the_readme(readme: str) -> None:

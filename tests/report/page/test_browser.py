@@ -300,6 +300,13 @@ def test_laptop_width_needs_no_sideways_scrolling(page: Tab) -> None:
         page.wait_for(f"document.documentElement.scrollWidth <= {width}")
 
 
+def test_marks_of_a_design_keep_their_width_in_the_table_of_a_narrow_window(page: Tab) -> None:
+    page.resize(420, 800)
+    widths = "[...document.querySelectorAll('#table td.marked')].map(cell => cell.clientWidth)"
+    page.wait_for(f"{widths}.length > 0 && Math.min(...{widths}) >= 200")
+    page.resize(1280, 800)
+
+
 def open_run(tab: Tab, run: RunLog) -> None:
     """Write and open the page of a run, which must report no error."""
     path = run.directory / "report.html"

@@ -52,6 +52,7 @@ const drawTable = () => {
       ...cells(row),
       ...(hasFront ? [] : [element("td", { class: "number", text: figure(points.violation[row]) })]),
       element("td", {
+        class: "marked",
         text: marksOf(number)
           .map((mark) => mark.label)
           .join(", "),
