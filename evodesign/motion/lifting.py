@@ -226,7 +226,8 @@ class LiftProblem:
                 "joints have no limit of speed"
             )
         elif open_by > OPEN:
-            reason = f"{lift} passes a height out of reach: hands or feet are {open_by:.3f} m off on the way"
+            off = f"hands or feet are {open_by:.3f} m off on the way"
+            reason = f"{lift} passes a height out of reach from where the feet stand at its ends: {off}"
         else:
             reason = f"no motion {lift} was found that meets all limits, however slow"
         return LiftSolution(lift, status, reason, attempts)

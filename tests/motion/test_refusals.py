@@ -44,7 +44,7 @@ def test_a_height_out_of_reach_on_the_way_is_said(hasty: Lifted) -> None:
     low, lift = hasty.hold(LIFT.from_m), msgspec.structs.replace(LIFT, to_m=1.7, knots=5)
     found = hasty.lifts.solve(hasty.design, lift, [low, low], hasty.robot, hasty.human)
     assert found.status not in {Status.SOLVED, Status.TIME_LIMIT}
-    assert "passes a height out of reach: hands or feet are 0." in found.reason
+    assert "out of reach from where the feet stand at its ends: hands or feet are 0." in found.reason
 
 
 def test_torque_limits_that_holds_meet_and_no_motion_are_said(hasty: Lifted) -> None:
