@@ -218,6 +218,9 @@ class LiftProblem:
         """Why no start led to a motion: the way, the time, or limits that no motion meets."""
         program, mass = self._program(lift.knots), self._scene.payload.mass
         status = worst_status([each.status for each in attempts if each.status is not Status.SOLVED])
+        if status is Status.TIME_LIMIT:
+            within = f"`seconds` of [solver], {self._setting.options.seconds:g} s"
+            return LiftSolution(lift, status, f"no motion {lift} was found within {within}", attempts)
         open_by = min(start.open_by for start in starts)
         slow = [program.solve(lift, start, design, mass, 0.0)[0] for start in starts]
         if any(status_of(ending.word) is Status.SOLVED for ending in slow):

@@ -47,6 +47,15 @@ def test_a_height_out_of_reach_on_the_way_is_said(hasty: Lifted) -> None:
     assert "out of reach from where the feet stand at its ends: hands or feet are 0." in found.reason
 
 
+def test_solves_that_run_out_of_time_say_so(lifted: Lifted) -> None:
+    holds = [lifted.hold(height) for height in (LIFT.from_m, LIFT.to_m)]
+    setting = replace(lifted.setting, options=replace(lifted.setting.options, seconds=1e-3))
+    lifts = LiftProblem(setting, symmetric=True)
+    found = lifts.solve(lifted.design, LIFT, holds, lifted.robot, lifted.human)
+    assert found.status is Status.TIME_LIMIT
+    assert found.reason == "no motion 0.9 to 1.1 m in 1.5 s was found within `seconds` of [solver], 0.001 s"
+
+
 def test_torque_limits_that_holds_meet_and_no_motion_are_said(hasty: Lifted) -> None:
     """Each end is held in a stance of its own, with torques that one stance for both does not do with."""
     lift, scene = msgspec.structs.replace(LIFT, from_m=0.8, to_m=1.2, knots=5), hasty.setting.scene
