@@ -43,6 +43,18 @@ def problem_of(tree: Tree, change: Change = lambda text: text) -> DesignProblem:
     return build_problem(source)
 
 
+@pytest.fixture
+def people_untried(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For time: what people reach takes most of what `check` takes."""
+    monkeypatch.setattr("evodesign.guess.preflight.people_hold", lambda _: "not tried, for time")
+
+
+@pytest.fixture
+def nothing_held(monkeypatch: pytest.MonkeyPatch, people_untried: None) -> None:
+    """Nor is anything else solved."""
+    monkeypatch.setattr("evodesign.guess.preflight.holds", lambda _: "not tried, for time")
+
+
 def faults(problem: DesignProblem) -> list[str]:
     return [finding.fault for finding in preflight(problem) if finding.fault]
 
@@ -95,6 +107,7 @@ def test_a_guessed_problem_passes_and_says_what_was_found() -> None:
     )
 
 
+@pytest.mark.usefixtures("nothing_held")
 def test_a_parameter_that_chooses_among_models_changes_the_mass_by_that_of_the_next_one() -> None:
     """The unscaled robot has the stronger one."""
     knees, models = '["left_knee", "right_knee"]', '["X6-60", "X8-120"]'
@@ -127,6 +140,7 @@ def test_heights_that_no_length_and_no_person_reaches_are_refused() -> None:
     assert re.fullmatch(rf"{key} female P5 reaches, from 0\.0\d to 1\.7\d m, found 4", person)
 
 
+@pytest.mark.usefixtures("people_untried")
 def test_a_robot_without_shapes_passes_and_is_told_what_is_left_out() -> None:
     tree = humanoid(Build())
     bare = replace(tree, links=tuple(Link(each.name, own_inertia=each.inertia) for each in tree.links))
@@ -137,12 +151,9 @@ def test_a_robot_without_shapes_passes_and_is_told_what_is_left_out() -> None:
     )
 
 
-def test_a_robot_without_limits_of_joints_is_told_of_them_and_keeps_no_knees_bent(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+@pytest.mark.usefixtures("nothing_held")
+def test_a_robot_without_limits_of_joints_is_told_of_them_and_keeps_no_knees_bent() -> None:
     """As in MJCF files that leave ranges to the controller: nothing says to which side a knee bends."""
-    for each in ("holds", "people_hold"):
-        monkeypatch.setattr(f"evodesign.guess.preflight.{each}", lambda _: "not tried, for time")
     joints = [replace(each, lower=-math.inf, upper=math.inf) for each in humanoid(Build()).joints]
     kinds = {JointKind.REVOLUTE: JointKind.CONTINUOUS}
     endless = replace(
@@ -162,11 +173,9 @@ def test_a_robot_without_limits_of_joints_is_told_of_them_and_keeps_no_knees_ben
         build_problem(ProblemSource(path=PATH, text=asked + SOLVER, files=files))
 
 
+@pytest.mark.usefixtures("nothing_held")
 @pytest.mark.parametrize("yaw", [math.pi / 2.0, math.pi, -math.pi / 2.0])
-def test_a_robot_that_looks_elsewhere_is_told_what_to_write(
-    yaw: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("evodesign.guess.preflight.holds", lambda _: "not tried, for time")
+def test_a_robot_that_looks_elsewhere_is_told_what_to_write(yaw: float) -> None:
     wrong = faults(problem_of(humanoid(Build(yaw))))
     remedy = {1: "+y", 2: "-x", 3: "-y"}[round(yaw / (math.pi / 2.0)) % 4]
     (sentence,) = [fault for fault in wrong if "robot.facing" in fault]
@@ -182,6 +191,7 @@ def test_a_robot_that_looks_elsewhere_is_told_what_to_write(
 LYING = Placement.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, math.pi / 2.0, 0.0))
 
 
+@pytest.mark.usefixtures("people_untried")
 @pytest.mark.parametrize(
     ("tree", "change", "sentence"),
     [
@@ -270,6 +280,7 @@ def test_what_cannot_be_is_one_sentence_with_key_and_remedy(
     assert re.match(sentence, first), first
 
 
+@pytest.mark.usefixtures("people_untried")
 @pytest.mark.slow
 def test_a_joint_whose_zero_lies_far_outside_of_its_range_holds_what_it_held() -> None:
     """An encoder's offset of 4 rad: lower and upper limits of the elbows beyond half a turn."""
