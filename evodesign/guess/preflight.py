@@ -80,9 +80,10 @@ def preflight(problem: DesignProblem) -> tuple[Finding, ...]:
 
 def _without_frames(problem: DesignProblem) -> DesignProblem:
     """The problem whose designed robot has no links without a mass, but for those that something names."""
-    tree = problem.scene.designed_tree
-    named = {name for parameter in problem.space.parameters for name in parameter.links}
-    named |= {tree.joint_by_name[name].child for each in problem.space.parameters for name in each.joints}
+    tree, named = problem.scene.designed_tree, set[str]()
+    for parameter in problem.space.parameters:
+        joints = (*parameter.joints, *(change.joint for change in parameter.changes))
+        named |= {*parameter.links, *(tree.joint_by_name[name].child for name in joints)}
     for robot in problem.scene.designed[:1]:
         named |= {*(contact.frame for contact in robot.contacts), *robot.trunk}
     bare = without_frames(tree, named)

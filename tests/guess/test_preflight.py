@@ -118,6 +118,17 @@ def test_a_parameter_that_chooses_among_models_changes_the_mass_by_that_of_the_n
     assert found == {"actuator.knees X8-120 to X6-60": f"{less:+.2g} kg"}
 
 
+@pytest.mark.usefixtures("people_untried")
+def test_a_joint_that_carries_nothing_may_be_a_parameter() -> None:
+    """Links without a mass are left out where nothing names them, and here a parameter does."""
+    tree = humanoid(Build())
+    antenna = replace(tree.joint_by_name["left_elbow"], name="antenna", parent="chest", child="antenna")
+    tree = replace(tree, links=(*tree.links, Link("antenna")), joints=(*tree.joints, antenna))
+    bounds = "offset_m = [-0.1, 0.1]\nalong = [0, 0, 1]"
+    table = f'[[design.joint]]\nname = "antenna"\njoints = ["antenna"]\n{bounds}\n'
+    assert not faults(problem_of(tree, lambda text: f"{text}\n{table}"))
+
+
 def at_heights(heights: str) -> DesignProblem:
     return problem_of(
         humanoid(Build()), lambda text: re.sub(r"heights_m = .*", f"heights_m = {heights}", text)
