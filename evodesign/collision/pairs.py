@@ -222,12 +222,12 @@ def is_joined(tree: Tree, pair: BodyPair) -> bool:
     """Whether one joint joins two links, or none, beside fixed ones; it may have several axes."""
     between = (tree.joint_by_name[name] for name in _between(tree, pair))
     moved = [joint.child for joint in between if joint.kind is not JointKind.FIXED]
-    return sum(child in pair or not _is_nothing(tree.link_by_name[child]) for child in moved) <= 1
+    return sum(child in pair or not _is_bare(tree.link_by_name[child]) for child in moved) <= 1
 
 
-def _is_nothing(link: Link) -> bool:
-    """Whether a link has neither mass nor shape, as between the axes of a joint of several."""
-    return not (link.inertia.mass or link.solids or link.looks or link.meshes)
+def _is_bare(link: Link) -> bool:
+    """Whether a link is a bare frame, as between the axes of a joint of several."""
+    return not (link.mass or link.looks or link.meshes)
 
 
 def _is_still(tree: Tree, joints: Collection[str], pair: BodyPair) -> bool:

@@ -217,8 +217,6 @@ def _bent(welded: WeldedTree, leg: Limb, ahead: Vector) -> float:
     if max(joint.upper, -joint.lower) < ONE_WAY * min(joint.upper, -joint.lower):
         return 0.0
     angle = BEND if joint.upper > -joint.lower else -BEND
-    straight, bent = (
-        link_frames(welded.tree, Placement(), {joint.name: each})[leg.end.name] for each in (0.0, angle)
-    )
-    center = leg.end.inertia.center
-    return -_along((bent @ straight.inverse).apply(center), center, ahead)
+    bent, straight = link_frames(welded.tree, Placement(), {joint.name: angle}), welded.places
+    moved, center = bent[leg.end.name] @ straight[leg.end.name].inverse, leg.end.inertia.center
+    return -_along(moved.apply(center), center, ahead)

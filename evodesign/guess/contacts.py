@@ -234,8 +234,7 @@ def _nearest(welded: WeldedTree, body: WeldedBody, at: Vector) -> str:
         for name, each in points.items()
     }
     near = [name for name in away if away[name] < min(away.values()) + ALIKE]
-    masses = {name: float(welded.tree.link_by_name[name].inertia.mass) for name in near or body.links}
-    return max(masses, key=lambda name: masses[name])
+    return welded.heaviest(near or body.links)
 
 
 def _points(welded: WeldedTree, body: WeldedBody) -> np.ndarray:

@@ -85,7 +85,8 @@ def _segment(welded: WeldedTree, limbs: Mapping[str, Limb], name: str, *, beyond
             return Group(name, (), 0.0, f"no segment of at least {SHORTEST * 100:g} cm")
         body, after = limb.bodies[longest], limb.bodies[longest + 1 :]
         joint = after[0].joint if after else None
-        link = _link_of(welded, body, welded.heaviest(body) if joint is None else joint.parent, ends[longest])
+        ends_in = welded.heaviest(body.links) if joint is None else joint.parent
+        link = _link_of(welded, body, ends_in, ends[longest])
         if link is None:
             return Group(name, (), 0.0, f"no link of '{body.name}' grows towards the next joint")
         links.append(link)

@@ -140,7 +140,7 @@ def _inline(names: dict[str, str]) -> str:
 
 def _trunk_frames(plan: BodyPlan) -> list[str]:
     """The links with mass that hips and shoulders are joined to."""
-    return [*dict.fromkeys(map(plan.welded.heaviest, (plan.trunk[0], plan.trunk[-1])))]
+    return [*dict.fromkeys(plan.welded.heaviest(body.links) for body in (plan.trunk[0], plan.trunk[-1]))]
 
 
 def _frame(contact: GuessedContact) -> Sequence[str]:

@@ -101,7 +101,8 @@ def space_of(tables: ProblemFile, source: ProblemSource, tree: Tree) -> DesignSp
         _check_parameter(parameter, key, source, tree, seen)
     space = DesignSpace((*parameters, *joints), walls_of(tables, source, tree))
     if space.margins and tables.task.lift:
-        position = [table.margin is None for table in tables.design.actuator].index(False)
+        actuators = enumerate(tables.design.actuator)
+        position = next(number for number, table in actuators if table.margin is not None)
         wanted = "rated_torque_n_m or models, as a load is lifted"
         raise InputError(source.path, f"design.actuator[{position}].margin", wanted, "a margin")
     try:

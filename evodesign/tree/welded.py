@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -85,9 +85,9 @@ class WeldedTree:
         inertia = total([part for part in parts if part.mass])
         return WeldedBody(links, joint, inertia, self.places[links[0]].translation)
 
-    def heaviest(self, body: WeldedBody) -> str:
-        """Name of the heaviest link of a body."""
-        return max(body.links, key=lambda name: float(self.tree.link_by_name[name].inertia.mass))
+    def heaviest(self, links: Iterable[str]) -> str:
+        """Name of the heaviest of some links."""
+        return max(links, key=lambda name: float(self.tree.link_by_name[name].inertia.mass))
 
     @cached_property
     def children(self) -> dict[str, tuple[str, ...]]:

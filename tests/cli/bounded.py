@@ -1,8 +1,8 @@
 """Commands in processes that may use 300 MB beyond what they import, and six times its processor time.
 
-Importing takes 2 s on an idle machine, and about as much longer as everything else on a slow or busy one.
-What grows faster than its input takes many times as long. All is imported once: each command has a process of
-its own, forked from there.
+On a slow or busy machine importing takes about as much longer as everything else. What a command loads when
+it needs it counts as what it imports, the search of the tests' problem too. What grows faster than its input
+takes many times as long. All is imported once: each command has a process of its own, forked from there.
 """
 
 from __future__ import annotations
